@@ -23,7 +23,7 @@ from spoil_bvh import FAULTS, joints_of, spoiled
 
 from dancetutor_cli.character.retargeting import Retargeting, RetargetTask
 from dancetutor_cli.dance.motion import Motion, sample
-from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, Wishes
+from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, RagdollOptions
 from dancetutor_cli.dance.quality.contact import stands
 from dancetutor_cli.dance.quality.figures import body_of
 from dancetutor_cli.dance.quality.posture import shape_figures, smoothness_figures
@@ -143,7 +143,7 @@ def main() -> None:
                 line, figures = row(
                     label,
                     Retargeting(
-                        RetargetTask(path, options.character, "neutral", Wishes(CORRECTIONS)), read_source(path)
+                        RetargetTask(path, options.character, "neutral", RagdollOptions(CORRECTIONS)), read_source(path)
                     ),
                 )
             except DancetutorError as error:

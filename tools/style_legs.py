@@ -29,7 +29,7 @@ from dancetutor_cli.dance.foot_path import both_feet
 from dancetutor_cli.dance.motion import Motion, sample
 from dancetutor_cli.dance.performance import perform, solve
 from dancetutor_cli.dance.physics.blend import Blend
-from dancetutor_cli.dance.physics.pipeline import Wishes
+from dancetutor_cli.dance.physics.pipeline import RagdollOptions
 from dancetutor_cli.dance.physics.style import load_style
 from dancetutor_cli.dance.pieces import MARGIN, RagdollStyle, piece_of
 from dancetutor_cli.dance.request import DanceRequest
@@ -88,7 +88,7 @@ def legs_of(chart: Wanted, style: str, length: float) -> Legs:
     stepped = dancer.play.rows.second[(dancer.play.limb >= 0).any(axis=1)]
     start = section_start(stepped, chart.place, length)
     span = (start, start + length)
-    ragdoll = RagdollStyle(Blend.of(load_style(style)), Wishes())
+    ragdoll = RagdollStyle(Blend.of(load_style(style)), RagdollOptions())
     motion = bake_piece(piece_of(dancer.plan, dancer.context, RATE, (span, span, MARGIN), ragdoll)).motion
     times = np.arange(np.ceil(start * RATE), np.floor(span[1] * RATE)) / RATE
     feet = both_feet(dancer.plan.feet, times, dancer.context.settings)

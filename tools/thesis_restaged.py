@@ -41,7 +41,7 @@ from thesis_pictures import picture
 from dancetutor_cli.character.retargeting import Retargeting, RetargetTask
 from dancetutor_cli.dance.motion import Motion, sample
 from dancetutor_cli.dance.physics.blend import Blend
-from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, Wishes, through_ragdoll
+from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, RagdollOptions, through_ragdoll
 from dancetutor_cli.dance.physics.style import PARTS, Spring, Style, load_style
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.formats.captured import read_source
@@ -71,7 +71,7 @@ def body(style: Style, **numbers: float) -> Style:
 
 SOFTER = sprung(NEUTRAL, 20.0)  # which 60 steps a second hold
 STILL = body(sprung(NEUTRAL, LOOSE), gravity=0.0)
-FULL, OWN = Wishes(CORRECTIONS, own_legs=True), Wishes(own_legs=True)
+FULL, OWN = RagdollOptions(CORRECTIONS, own_legs=True), RagdollOptions(own_legs=True)
 HEAVIER = {"arms": 10000.0, "hands": 10000.0, "head": 10000.0}
 
 
@@ -261,7 +261,7 @@ def _soft_ankles() -> dict[str, Spring]:
 
 def clip(path: Path) -> Motion:
     """`SECONDS` of a capture on the dancer's body, forward and then backward; it begins, turns and ends slowly."""
-    motion = Retargeting(RetargetTask(path, "dancer", "neutral", Wishes()), read_source(path)).input_on_body
+    motion = Retargeting(RetargetTask(path, "dancer", "neutral", RagdollOptions()), read_source(path)).input_on_body
     times = np.arange(round(2 * SECONDS * motion.fps) + 1) / motion.fps
     speed = np.clip((SECONDS - times) / TURN, -1.0, 1.0) * np.clip(
         np.minimum(times, 2 * SECONDS - times) / TURN, 0.0, 1.0
@@ -277,9 +277,9 @@ def measured(experiment: Experiment, clips: dict[str, Motion]) -> list[dict[str,
     walk = next(name for name in clips if "walk" in name)
     for row in experiment.rows:
         try:
-            wishes = FULL if row.corrected else OWN
+            options = FULL if row.corrected else OWN
             runs = {
-                name: Taken(motion, through_ragdoll(motion, Blend.of(row.style), wishes))
+                name: Taken(motion, through_ragdoll(motion, Blend.of(row.style), options))
                 for name, motion in clips.items()
             }
         except DancetutorError:  # the engine says that it fails

@@ -93,7 +93,7 @@ class AnimatedDancer:
         if of_motion:
             return self.baked.motion.notes
         start, end = self.section
-        line = dropped_notes_message([one for one in self._dancer.plan.let_go if start <= one.second <= end])
+        line = dropped_notes_message([one for one in self._dancer.plan.dropped if start <= one.second <= end])
         return (line,) if line else ()
 
     @property

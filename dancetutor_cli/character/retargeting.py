@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
     from dancetutor_cli.dance.physics.blend import Blend
     from dancetutor_cli.dance.physics.captured import CapturedMotion
-    from dancetutor_cli.dance.physics.pipeline import RagdollResult, Wishes
+    from dancetutor_cli.dance.physics.pipeline import RagdollOptions, RagdollResult
     from dancetutor_cli.dance.quality.figures import MotionReport
     from dancetutor_cli.dance.rig.skeleton import Skeleton
     from dancetutor_cli.dance.units import Array
@@ -51,13 +51,13 @@ SCHEMA = b"1"  # of what a body's tuning depends on besides body and neutral sty
 class RetargetTask:
     """The user's options of `retarget`. file : file of the motion
 
-    style : as `dance.physics.blend.load_choice` takes it; wishes : corrections, pushes, trips
+    style : as `dance.physics.blend.load_choice` takes it; options : corrections, pushes, trips
     """
 
     file: Path
     character: str
     style: str
-    wishes: Wishes
+    options: RagdollOptions
 
 
 @dataclass
@@ -113,7 +113,7 @@ class Retargeting:
         """The style or styles, with springs and densities of the body."""
         blend = load_choice(self.task.style).blend()
         styles = blend.styles
-        if "limits" not in self.task.wishes.corrections:
+        if "limits" not in self.task.options.corrections:
             styles = tuple(replace(style, limits=False) for style in styles)
         if self.body.offsets.tobytes() != dancer_skeleton().offsets.tobytes():
             styles = tuple(map(tuning_of(self.body).of, styles))
@@ -123,7 +123,7 @@ class Retargeting:
     def ragdoll_result(self) -> RagdollResult:
         """The result of the ragdoll, on the body."""
         try:
-            passed = through_ragdoll(self.input_on_body, self.blend, self.task.wishes)
+            passed = through_ragdoll(self.input_on_body, self.blend, self.task.options)
         except FileError:
             raise
         except DancetutorError as error:
@@ -165,7 +165,7 @@ class Retargeting:
         faults = fault_figures(self.input_on_body, passed.motion, passed.plants)
         curves = {name: (t, v) for name, (t, v) in whole.curves.items() if len(v) and np.isfinite(v).any()}
         whole = replace(whole, figures=(*whole.figures, *faults), curves=curves)
-        plain = not set(self.task.wishes.corrections) - {"limits"}
+        plain = not set(self.task.options.corrections) - {"limits"}
         whole = with_distances(whole, passed.distances, self.task.style if plain else None)
         return replace(whole, curves=whole.curves | self._point_curves())
 

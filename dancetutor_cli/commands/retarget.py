@@ -80,7 +80,7 @@ def command(file: Path, options: RetargetOptions) -> None:
     keep their directions, and the feet stand where the captured feet stood, in proportion to the character's legs.
     """
     from dancetutor_cli.character.retargeting import Retargeting, RetargetTask
-    from dancetutor_cli.dance.physics.pipeline import wishes_of
+    from dancetutor_cli.dance.physics.pipeline import parse_ragdoll_options
     from dancetutor_cli.formats.captured import read_source
 
     check_file(options.output, SUFFIXES)
@@ -89,8 +89,9 @@ def command(file: Path, options: RetargetOptions) -> None:
             f"--with-input shows two dancers in a film: {options.output} must end in .mp4; a .html page shows both"
         )
     check_targets(options.report_to, options.plot)
-    wishes = replace(wishes_of(options.push, options.trip), corrections=corrections_of(options.correct), own_legs=True)
-    task = RetargetTask(file, options.character, options.style or "neutral", wishes)
+    ragdoll = parse_ragdoll_options(options.push, options.trip)
+    ragdoll = replace(ragdoll, corrections=corrections_of(options.correct), own_legs=True)
+    task = RetargetTask(file, options.character, options.style or "neutral", ragdoll)
     work = Retargeting(task, read_source(file, options.animation))
     words = _written(work, options.output, options.with_input)
     warn(work.ragdoll_result.motion.notes)

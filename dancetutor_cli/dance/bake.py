@@ -65,7 +65,7 @@ class Manner(TypedDict, total=False):
     sides : the side from which she comes and the side to which she goes, 0 left or 1 right, if another dancer is beside
     her
     person : as in `Context`
-    let_go : the notes that are not played because no limb is free, with reasons, if the caller has decided it
+    dropped : the notes that are not played because no limb is free, with reasons, if the caller has decided it
     """
 
     settings: MotionSettings | SettingsCourse | None
@@ -73,7 +73,7 @@ class Manner(TypedDict, total=False):
     gait: str
     sides: tuple[int, int] | None
     person: int
-    let_go: tuple[DroppedNote, ...]
+    dropped: tuple[DroppedNote, ...]
 
 
 def bake(
@@ -122,8 +122,8 @@ def planned(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> t
     def second(tick: int) -> float:
         return float(timing.seconds(np.array([tick], dtype=np.int64))[0])
 
-    play, gone = without_unplayable(play, pad, manner.get("let_go", ()))
-    plan = replace(plan_footwork(play, second, manner.get("gait", "flat"), context), let_go=gone)
+    play, dropped = without_unplayable(play, pad, manner.get("dropped", ()))
+    plan = replace(plan_footwork(play, second, manner.get("gait", "flat"), context), dropped=dropped)
     if rail is None:
         return plan, context
     from dancetutor_cli.dance.grips import grips_of
@@ -211,10 +211,10 @@ def _followed(motion: Motion, piece: Piece, ragdoll: RagdollStyle) -> BakedPiece
     """
     from dancetutor_cli.dance.physics.pipeline import through_ragdoll
 
-    wishes, (first, last) = ragdoll.wishes.within(motion.times[0], motion.times[-1]), piece.kept_span
-    passed = through_ragdoll(motion, ragdoll.blend, wishes)
+    options, (first, last) = ragdoll.options.within(motion.times[0], motion.times[-1]), piece.kept_span
+    passed = through_ragdoll(motion, ragdoll.blend, options)
     add_hair(motion.skeleton, motion.times, passed.motion.rotations, passed.motion.root, piece.context.settings.hair)
-    seconds = [*(trip.second for trip in wishes.trips), *(push.second for push in wishes.pushes)]
+    seconds = [*(one.second for one in options.stumbles), *(one.second for one in options.pushes)]
     lines = zip(seconds, passed.motion.notes[len(motion.notes) :], strict=True)
     notes = (*motion.notes, *(line for second, line in lines if first <= second < last))
     return BakedPiece(replace(passed.motion, notes=notes), passed.distances)

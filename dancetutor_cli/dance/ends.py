@@ -60,7 +60,7 @@ def entrance_of(plan: Plan, cut: Cut) -> Plan | None:
             for grip in plan.grips
             if grip.end > begin
         ),
-        let_go=(),
+        dropped=(),
     )
 
 
@@ -93,7 +93,7 @@ def exit_of(plan: Plan, span: Span, context: Context) -> Plan:
         last=max((min(one.end, until) for one in touches), default=until),
         walks=tuple(walk for walk in plan.walks if walk.start < until - NOW),
         grips=tuple(grip for grip in plan.grips if grip.start < until),
-        let_go=(),
+        dropped=(),
     )
     home = homeward(rest, span, context)
     if home is None:

@@ -89,7 +89,7 @@ class Motion:
     bar : the bar that the dancer holds, None for no bar; grips : when and where she holds it, sorted by start
     notes : remarks on the bake for the user: where limits of the body were exceeded
     ground : pad and floor, None if the dancer stays on the pad and the ground has the height 0 everywhere
-    let_go : notes that the dancer does not play, sorted by second
+    dropped : notes that the dancer does not play, sorted by second
     """
 
     skeleton: Skeleton
@@ -102,7 +102,7 @@ class Motion:
     grips: tuple[Grip, ...] = ()
     ground: Ground | None = None
     notes: tuple[str, ...] = ()
-    let_go: tuple[DroppedNote, ...] = ()
+    dropped: tuple[DroppedNote, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -104,14 +104,15 @@ class Performance:
     def _ragdoll(self, wanted: Cut) -> RagdollStyle | None:
         if self.blend is None:
             return None
-        from dancetutor_cli.dance.physics.pipeline import wishes_of
+        from dancetutor_cli.dance.physics.pipeline import parse_ragdoll_options
 
-        wishes = wishes_of(self.request.push, self.request.trip, self.rate)
-        befalls = [("--push", push.second) for push in wishes.pushes] + [("--trip", t.second) for t in wishes.trips]
-        for name, second in befalls:
+        options = parse_ragdoll_options(self.request.push, self.request.trip, self.rate)
+        disturbances = [("--push", one.second) for one in options.pushes]
+        disturbances += [("--trip", one.second) for one in options.stumbles]
+        for name, second in disturbances:
             if not wanted.start <= second <= wanted.end:
                 raise UsageError(f"{name} {second:g}: the motion lasts from {wanted.start:.3f} s to {wanted.end:.3f} s")
-        return RagdollStyle(self.blend, wishes)
+        return RagdollStyle(self.blend, options)
 
 
 def _one(run: PieceRunner, piece: Piece) -> Motion:
@@ -164,7 +165,7 @@ def perform(solved: Sequence[Solved], request: DanceRequest, rate: float = 1.0) 
         play = as_heard(fastest, timing)
         numbers = request.motion, request.form
         settings = load_settings(*numbers) if blend is None else blend.settings(*numbers)
-        manner = Manner(settings=settings, bar=request.bar, gait=request.gait, sides=side, person=person, let_go=gone)
+        manner = Manner(settings=settings, bar=request.bar, gait=request.gait, sides=side, person=person, dropped=gone)
         plan, context = planned(timing, play, own, **manner)
         place = place_on(pad, one.chart, own) if len(parts) > 1 else (0.0, 0.0)
         dancers.append(Performer(one, own, play, plan, context, place))

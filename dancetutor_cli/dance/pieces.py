@@ -22,7 +22,7 @@ from dancetutor_cli.feet.play import dropped_notes_message
 
 if TYPE_CHECKING:
     from dancetutor_cli.dance.physics.blend import Blend
-    from dancetutor_cli.dance.physics.pipeline import Wishes
+    from dancetutor_cli.dance.physics.pipeline import RagdollOptions
 
 
 # The keys of a bake. Their times are chosen so that contacts are also right where a viewer interpolates between keys.
@@ -138,7 +138,7 @@ class RagdollStyle:
     """The styles in which a ragdoll follows the dancer, and the pushes and trips that she gets."""
 
     blend: Blend
-    wishes: Wishes
+    options: RagdollOptions
 
 
 @dataclass(frozen=True, slots=True)
@@ -305,7 +305,7 @@ def joined(pieces: Sequence[Piece], done: Sequence[BakedPiece], start: float, en
 
 def _between(pieces: Sequence[Piece], done: Sequence[BakedPiece], start: float, end: float) -> Motion:
     """Return the first piece's motion with contacts, grips and notes between two seconds; its keys are not changed."""
-    gone = tuple(one for one in pieces[0].plan.let_go if start <= one.second <= end)
+    gone = tuple(one for one in pieces[0].plan.dropped if start <= one.second <= end)
     notes = dict.fromkeys(note for one in done for note in one.motion.notes)
     grips = dict.fromkeys(g for one in done for g in one.motion.grips if g.end > start and g.start < end)
     return replace(
@@ -313,7 +313,7 @@ def _between(pieces: Sequence[Piece], done: Sequence[BakedPiece], start: float, 
         contacts=tuple(_contacts(pieces, done, start, end)),
         grips=tuple(grips),
         notes=(*((dropped_notes_message(gone),) if gone else ()), *notes),
-        let_go=gone,
+        dropped=gone,
     )
 
 

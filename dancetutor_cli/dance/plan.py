@@ -191,7 +191,7 @@ class Plan:
     grips : when the dancer's hands rest on the bar behind her, as in `Motion`; walks : in order of time
     lead : the foot that leads, 0 left or 1 right. It decides where both sides are equal, so that the mirror image of a
     play is danced as the mirror image
-    let_go : notes that the dancer does not play, in order of time
+    dropped : notes that the dancer does not play, in order of time
     """
 
     feet: tuple[FootTrack, FootTrack]
@@ -203,7 +203,7 @@ class Plan:
     grips: tuple[Grip, ...] = ()
     walks: tuple[Route, ...] = ()
     lead: int = 0
-    let_go: tuple[DroppedNote, ...] = ()
+    dropped: tuple[DroppedNote, ...] = ()
 
     @property
     def song(self) -> tuple[int, int]:

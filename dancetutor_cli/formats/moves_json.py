@@ -102,7 +102,7 @@ def moves_data(
         ],
         "let_go": [
             {"second": _round(one.second), "column": one.column, "why": one.reason.name.lower()}
-            for one in plan.let_go
+            for one in plan.dropped
             if start <= one.second <= end
         ],
     }

@@ -68,7 +68,7 @@ _GRIPS = {
     "x": Field("float", ("g",), -_FAR, _FAR, required=False),
     "across": Field("integer", ("g",), 0, 1, required=False),
 }
-_LET_GO = {
+_DROPPED = {
     "second": Field("float", ("k",), -_FAR, _FAR, required=False),
     "row": Field("integer", ("k",), -1, _INDEX, required=False),
     "column": Field("integer", ("k",), 0, 1000, required=False),
@@ -85,7 +85,7 @@ FIELDS: Mapping[str, Field] = {
     "rotations": Field("float", ("f", "j", 4), -2.0, 2.0),
     "root": Field("float", ("f", 3), -_FAR, _FAR),
     **{f"contact_{name}": field for name, field in _CONTACTS.items()},
-    **{f"let_go_{name}": field for name, field in _LET_GO.items()},
+    **{f"let_go_{name}": field for name, field in _DROPPED.items()},
     "ground": Field("float", (5,), -_FAR, _FAR, required=False),
     "bar": Field("float", (3,), -_FAR, _FAR, required=False),
     "bar_spans": Field("float", ("s", 2), -_FAR, _FAR, required=False),
@@ -111,9 +111,9 @@ def write_npz(path: Path, motion: Motion) -> None:
         arrays[f"contact_{name}"] = values.reshape(-1, 2) if name == "panel" else values
     if motion.bar is not None:
         arrays |= _bar_arrays(motion.bar, motion.grips)
-    if motion.let_go:
-        for name in _LET_GO:
-            column = [getattr(one, _ATTRIBUTES.get(name, name)) for one in motion.let_go]
+    if motion.dropped:
+        for name in _DROPPED:
+            column = [getattr(one, _ATTRIBUTES.get(name, name)) for one in motion.dropped]
             arrays[f"let_go_{name}"] = np.array(column, dtype=_TYPES.get(name, "i1"))
     if motion.ground is not None:
         arrays["ground"] = np.array([*motion.ground.low, *motion.ground.high, motion.ground.drop])
@@ -168,7 +168,7 @@ def read_npz(path: Path) -> Motion:
     ]
     fps, times = float(arrays["fps"]), arrays["times"]
     parts = (times, arrays["rotations"], arrays["root"], tuple(contacts))
-    return Motion(skeleton, fps, *parts, *_bar(arrays), _ground(arrays), let_go=_let_go(arrays))
+    return Motion(skeleton, fps, *parts, *_bar(arrays), _ground(arrays), dropped=_dropped(arrays))
 
 
 def _skeleton(path: Path, arrays: dict[str, Any]) -> Skeleton:
@@ -192,9 +192,9 @@ def _check_motion(path: Path, arrays: dict[str, Any]) -> None:
         raise FileError(path, "array 'rotations' must hold unit quaternions (w, x, y, z)")
 
 
-def _let_go(arrays: dict[str, Any]) -> tuple[DroppedNote, ...]:
+def _dropped(arrays: dict[str, Any]) -> tuple[DroppedNote, ...]:
     none = np.zeros(len(arrays.get("let_go_second", ())))
-    columns = [arrays.get(f"let_go_{name}", none) for name in _LET_GO]
+    columns = [arrays.get(f"let_go_{name}", none) for name in _DROPPED]
     return tuple(DroppedNote(float(s), int(r), int(c), DropReason(int(w))) for s, r, c, w in zip(*columns, strict=True))
 
 

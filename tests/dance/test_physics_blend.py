@@ -13,7 +13,7 @@ from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.bake import bake_plan, cut, planned
 from dancetutor_cli.dance.motion import Distances, Motion, sample
 from dancetutor_cli.dance.physics.blend import Blend, load_choice, mean_distances
-from dancetutor_cli.dance.physics.pipeline import Wishes, through_ragdoll
+from dancetutor_cli.dance.physics.pipeline import RagdollOptions, through_ragdoll
 from dancetutor_cli.dance.physics.style import load_style
 from dancetutor_cli.dance.pieces import Piece, RagdollStyle, in_turn, pieces_of
 from dancetutor_cli.dance.quality.report import report
@@ -198,7 +198,7 @@ def pieces_in(style: str) -> list[Piece]:
     blend = load_choice(style).blend(timing)
     manner = {"settings": blend.settings(None, "usual")}
     plan, context = planned(timing, plays.play(sorted(events, key=lambda e: e[0])), plays.pad(), **manner)  # type: ignore[arg-type]
-    return list(pieces_of(plan, context, 60.0, RagdollStyle(blend, Wishes())))
+    return list(pieces_of(plan, context, 60.0, RagdollStyle(blend, RagdollOptions())))
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from dancetutor_cli.character.retargeting import Retargeting, RetargetTask
-from dancetutor_cli.dance.physics.pipeline import Wishes
+from dancetutor_cli.dance.physics.pipeline import RagdollOptions
 from dancetutor_cli.dance.physics.plants import PIVOT, Plants, planted, tidied
 from dancetutor_cli.dance.physics.repin import AnkleTracks
 from dancetutor_cli.dance.quality.figures import MotionReport
@@ -32,7 +32,7 @@ def retargeted(source: Path, fault: str, folder: Path, corrections: tuple[str, .
     path = folder / f"{fault}.bvh"
     if not path.exists():
         write_bvh(path, tool.spoiled(source, (fault,), (0.1, 6.0)))
-    return Retargeting(RetargetTask(path, "dancer", "neutral", Wishes(corrections)), read_source(path))
+    return Retargeting(RetargetTask(path, "dancer", "neutral", RagdollOptions(corrections)), read_source(path))
 
 
 def value(report: MotionReport, name: str) -> float:

@@ -7,7 +7,7 @@ import pytest
 from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics.blend import Blend
-from dancetutor_cli.dance.physics.pipeline import Wishes, through_ragdoll
+from dancetutor_cli.dance.physics.pipeline import RagdollOptions, through_ragdoll
 from dancetutor_cli.dance.physics.pushes import Push, Stumble, parse_push
 from dancetutor_cli.dance.physics.style import load_style
 from dancetutor_cli.dance.quality.report import report
@@ -39,7 +39,7 @@ def apart(one: Motion, other: Motion, joint: str) -> np.ndarray:
 
 @pytest.mark.parametrize("degrees", [0.0, 90.0, 180.0])
 def test_300_newtons_move_her_and_she_takes_every_note(plain: Motion, undisturbed: Motion, degrees: float) -> None:
-    made = through_ragdoll(plain, NEUTRAL, Wishes(pushes=(Push(WHEN, 300.0, degrees),))).motion
+    made = through_ragdoll(plain, NEUTRAL, RagdollOptions(pushes=(Push(WHEN, 300.0, degrees),))).motion
     away = apart(made, undisturbed, "skullbase")
     assert away.max() >= 0.05, "she gives way"
     assert away[made.times < WHEN - 0.04].max() < 0.005, "not before"
@@ -54,14 +54,14 @@ def test_300_newtons_move_her_and_she_takes_every_note(plain: Motion, undisturbe
 
 def test_a_push_to_her_left_moves_her_to_her_left(plain: Motion, undisturbed: Motion) -> None:
     left, right = (
-        through_ragdoll(plain, NEUTRAL, Wishes(pushes=(Push(WHEN, 300.0, d),))).motion.root - undisturbed.root
+        through_ragdoll(plain, NEUTRAL, RagdollOptions(pushes=(Push(WHEN, 300.0, d),))).motion.root - undisturbed.root
         for d in (90.0, 270.0)
     )
     assert left[:, 0].max() > 0.04 > left[:, 0].min() + 0.03 and right[:, 0].min() < -0.04
 
 
 def test_nobody_stands_a_shove_of_1500_newtons_and_the_notes_missed_are_named(plain: Motion) -> None:
-    made = through_ragdoll(plain, NEUTRAL, Wishes(pushes=(Push(WHEN, 1500.0, 270.0),))).motion
+    made = through_ragdoll(plain, NEUTRAL, RagdollOptions(pushes=(Push(WHEN, 1500.0, 270.0),))).motion
     missed = [c for c in plain.contacts if WHEN <= c.start < WHEN + 0.8]
     assert len(made.contacts) == len(plain.contacts) - len(missed) < len(plain.contacts)
     for contact in missed:
@@ -76,15 +76,15 @@ def test_a_held_note_that_a_shove_makes_her_leave_is_missed_and_named() -> None:
     events = [(1.0, {0: plays.L}), (1.3, {3: plays.R}), (3.2, {1: plays.L})]
     play = plays.play(events, holds={(0, 0): 2.9})
     held = bake(plays.chart().timing, play, plays.pad(), section=(0.6, 3.8))
-    made = through_ragdoll(held, NEUTRAL, Wishes(pushes=(Push(WHEN, 1200.0, 90.0),))).motion
+    made = through_ragdoll(held, NEUTRAL, RagdollOptions(pushes=(Push(WHEN, 1200.0, 90.0),))).motion
     assert "missed: 1.000 s column 0 (left foot, held)" in made.notes[-1]
     assert report(held)["contacts missed"].value == 0 and report(made)["contacts missed"].value == 1
-    light = through_ragdoll(held, NEUTRAL, Wishes(pushes=(Push(WHEN, 200.0, 270.0),))).motion
+    light = through_ragdoll(held, NEUTRAL, RagdollOptions(pushes=(Push(WHEN, 200.0, 270.0),))).motion
     assert light.notes[-1].endswith("; no note is missed") and report(light)["contacts missed"].value == 0
 
 
 def test_a_caught_foot_is_late_and_she_pitches_ahead(plain: Motion, undisturbed: Motion) -> None:
-    made = through_ragdoll(plain, NEUTRAL, Wishes(trips=(Stumble(WHEN),))).motion
+    made = through_ragdoll(plain, NEUTRAL, RagdollOptions(stumbles=(Stumble(WHEN),))).motion
     assert apart(made, undisturbed, "skullbase").max() >= 0.05
     feet = [apart(made, undisturbed, f"{s}_talocrural") for s in "lr"]
     assert max(f.max() for f in feet) > 0.03 and min(f.max() for f in feet) < 0.003, "one foot"
@@ -94,7 +94,7 @@ def test_a_caught_foot_is_late_and_she_pitches_ahead(plain: Motion, undisturbed:
 
 
 def test_two_runs_give_the_same_bytes(plain: Motion) -> None:
-    runs = [through_ragdoll(plain, NEUTRAL, Wishes(pushes=(Push(WHEN, 400.0, 45.0),))).motion for _ in range(2)]
+    runs = [through_ragdoll(plain, NEUTRAL, RagdollOptions(pushes=(Push(WHEN, 400.0, 45.0),))).motion for _ in range(2)]
     assert runs[0].rotations.tobytes() == runs[1].rotations.tobytes()
 
 
@@ -118,6 +118,6 @@ def test_a_push_that_is_none_is_reported_in_one_line(text: str, said: str) -> No
 def test_pushes_outside_of_the_motion_are_refused(plain: Motion) -> None:
     assert parse_push("12.5:300:Back") == Push(12.5, 300.0, 180.0) and parse_push("1:2:-45").degrees == -45
     with pytest.raises(UsageError, match=r"--push 9: the motion lasts from 0\.600 s to 3\.600 s"):
-        through_ragdoll(plain, NEUTRAL, Wishes(pushes=(Push(9.0, 300.0, 0.0),)))
+        through_ragdoll(plain, NEUTRAL, RagdollOptions(pushes=(Push(9.0, 300.0, 0.0),)))
     with pytest.raises(UsageError, match=r"--trip 3\.59: no foot is in the air after that"):
-        through_ragdoll(plain, NEUTRAL, Wishes(trips=(Stumble(3.59),)))
+        through_ragdoll(plain, NEUTRAL, RagdollOptions(stumbles=(Stumble(3.59),)))

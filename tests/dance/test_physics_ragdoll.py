@@ -12,7 +12,7 @@ from physics_phrase import phrase
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics import style as backend
 from dancetutor_cli.dance.physics.blend import Blend
-from dancetutor_cli.dance.physics.pipeline import RagdollResult, Wishes, through_ragdoll
+from dancetutor_cli.dance.physics.pipeline import RagdollOptions, RagdollResult, through_ragdoll
 from dancetutor_cli.dance.physics.ragdoll import bones_of, points_of, pose_of, turns_of
 from dancetutor_cli.dance.physics.simulation import DEVIATION, LARGEST, MEAN
 from dancetutor_cli.dance.physics.style import PARTS, Spring, Style, load_style
@@ -25,7 +25,7 @@ NEUTRAL = load_style("neutral")
 
 
 def followed(given: Motion, style: Style, own_legs: bool = False) -> RagdollResult:
-    return through_ragdoll(given, Blend.of(style), Wishes(own_legs=own_legs))
+    return through_ragdoll(given, Blend.of(style), RagdollOptions(own_legs=own_legs))
 
 
 def changed(style: Style = NEUTRAL, frequency: float | None = None, damping: float = 0.5, **numbers: float) -> Style:

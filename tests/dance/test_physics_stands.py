@@ -10,7 +10,7 @@ from dancetutor_cli.character.retargeting import Retargeting, RetargetTask
 from dancetutor_cli.dance.motion import Motion, sample
 from dancetutor_cli.dance.physics.ankles import eased_ankles
 from dancetutor_cli.dance.physics.arms import push_arms_out
-from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, Wishes
+from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, RagdollOptions
 from dancetutor_cli.dance.physics.plants import Plants
 from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, repinned
 from dancetutor_cli.dance.physics.stands import keep_feet_still
@@ -119,7 +119,7 @@ CLIPS = ("pymo_8walk", "fair_dab", "fair_jumping_jacks", "cmu_01_01_jumps")
 @pytest.mark.parametrize("clip", CLIPS)
 def test_captures_stand_as_seen_from_outside(shared_data: Path, clip: str) -> None:
     path = shared_data / "bvh" / f"{clip}.bvh"
-    work = Retargeting(RetargetTask(path, "dancer", "neutral", Wishes(CORRECTIONS)), read_source(path))
+    work = Retargeting(RetargetTask(path, "dancer", "neutral", RagdollOptions(CORRECTIONS)), read_source(path))
     motion = work.ragdoll_result.motion
     found = [one for name in ("talocrural", "metatarsal") for s in "lr" for one in _slides(motion, f"{s}_{name}")]
     given = [one for s in "lr" for one in _slides(work.input_on_body, f"{s}_talocrural")]

@@ -14,7 +14,7 @@ from test_page_document import unpacked
 
 from dancetutor_cli.character.retargeting import Retargeting, RetargetTask
 from dancetutor_cli.commands.retarget import command
-from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, Wishes
+from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, RagdollOptions
 from dancetutor_cli.formats.bvh import read_bvh, write_bvh
 from dancetutor_cli.formats.captured import read_source
 
@@ -31,7 +31,8 @@ def work(tmp_path_factory: pytest.TempPathFactory) -> Retargeting:
     path = tmp_path_factory.mktemp("capture") / "walker.bvh"
     write_bvh(path, renamed(phrase(1.0), "lafan1"))
     return Retargeting(
-        RetargetTask(path, "dancer", "neutral", Wishes(corrections=CORRECTIONS, own_legs=True)), read_source(path)
+        RetargetTask(path, "dancer", "neutral", RagdollOptions(corrections=CORRECTIONS, own_legs=True)),
+        read_source(path),
     )
 
 

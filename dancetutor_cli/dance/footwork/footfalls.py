@@ -72,8 +72,8 @@ class WalkSteps:
 
 
 @dataclass(frozen=True, slots=True)
-class Trip:
-    """A way from one stand to another, facing `heading` (radians) on the way, from `start` until `ready`, seconds."""
+class WalkRequest:
+    """A walk from one stand to another, facing `heading` (radians) on the way, from `start` until `ready`, seconds."""
 
     begin: Stand
     goal: Stand
@@ -82,25 +82,25 @@ class Trip:
     ready: float
 
 
-def footsteps(trip: Trip, gait: str, lead: int, context: Context) -> WalkSteps | None:
+def footsteps(request: WalkRequest, gait: str, lead: int, context: Context) -> WalkSteps | None:
     """Return footsteps from one stand to another, at the slowest pace that arrives in time; None if no pace does.
 
     lead : the foot that goes first if both have the same room
     """
     slow, quick = load_gait(gait)
-    begin, goal, most = trip.begin, trip.goal, context.settings.walk.turn
+    begin, goal, most = request.begin, request.goal, context.settings.walk.turn
     distance = float(np.linalg.norm(goal.middle - begin.middle))
-    turning = _steps_to_turn(begin.heading, trip.heading, most) + _steps_to_turn(trip.heading, goal.heading, most)
+    turning = _steps_to_turn(begin.heading, request.heading, most) + _steps_to_turn(request.heading, goal.heading, most)
     for share in SPEEDS:
         pace = blended(slow, quick, float(share))
         count = max(int(np.ceil(2 * distance / pace.stride - 1e-6)), turning + 1, 2) + 1
-        last = trip.start + (1.0 - STANCE) * pace.period + (count - 1) * pace.period / 2
-        if last <= trip.ready:
+        last = request.start + (1.0 - STANCE) * pace.period + (count - 1) * pace.period / 2
+        if last <= request.ready:
             how = Pace(gait, float(share), pace)
             both = []
             for side in (lead, 1 - lead):
-                falls = _footfalls(trip, count, side, context)
-                both.append(_as_swings(trip, falls, side, how, context))
+                falls = _footfalls(request, count, side, context)
+                both.append(_as_swings(request, falls, side, how, context))
             return max(both, key=lambda s: round(s.room, 6))
     return None
 
@@ -128,11 +128,11 @@ class Footfall:
     heading: float
 
 
-def _footfalls(trip: Trip, count: int, first: int, context: Context) -> list[Footfall]:
+def _footfalls(request: WalkRequest, count: int, first: int, context: Context) -> list[Footfall]:
     """Return `count` footfalls, the first by foot `first`; the last two are the feet of the goal."""
-    begin, goal, ground, settings = trip.begin, trip.goal, context.ground, context.settings
+    begin, goal, ground, settings = request.begin, request.goal, context.ground, context.settings
     out = np.radians(settings.step.toe_out)
-    ways = _ways(trip, count, np.radians(settings.walk.turn))
+    ways = _ways(request, count, np.radians(settings.walk.turn))
     travel = goal.middle - begin.middle
     along = float(np.arctan2(travel[0], travel[1]))
     # steps across the direction of the body are short, or ankles would bend aside
@@ -153,11 +153,11 @@ def _footfalls(trip: Trip, count: int, first: int, context: Context) -> list[Foo
     return steps
 
 
-def _ways(trip: Trip, count: int, most: float) -> list[float]:
+def _ways(request: WalkRequest, count: int, most: float) -> list[float]:
     """Return the headings at all footfalls but the last two: `heading` as soon and as long as turns allow."""
-    begin, goal, out = trip.begin, trip.goal, []
+    begin, goal, out = request.begin, request.goal, []
     for k in range(1, count - 1):
-        way = np.clip(trip.heading, begin.heading - k * most, begin.heading + k * most)
+        way = np.clip(request.heading, begin.heading - k * most, begin.heading + k * most)
         left = (count - 1 - k) * most
         out.append(float(np.clip(way, goal.heading - left, goal.heading + left)))
     return out
@@ -186,15 +186,15 @@ def room(start: tuple[Array, float], step: Footfall, bulge: Bulge, other: tuple[
     return float(gaps_at(balls, start[1] + share * (step.yaw - start[1]), *other).min())
 
 
-def _as_swings(trip: Trip, steps: list[Footfall], first: int, how: Pace, context: Context) -> WalkSteps:
-    begin, pace, ground, walk = trip.begin, how.gait, context.ground, context.settings.walk
+def _as_swings(request: WalkRequest, steps: list[Footfall], first: int, how: Pace, context: Context) -> WalkSteps:
+    begin, pace, ground, walk = request.begin, how.gait, context.ground, context.settings.walk
     push, heel = np.radians((pace.push_pitch, pace.heel_pitch))
     places = [(begin.balls[s], float(begin.yaws[s])) for s in (0, 1)]
     swings: tuple[list[Walk], list[Walk]] = ([], [])
     turns, landings, before, least = [], [], begin.heading, np.inf
     for k, step in enumerate(steps):
         side = (first + k) % 2
-        land = trip.start + (1.0 - STANCE) * pace.period + k * pace.period / 2
+        land = request.start + (1.0 - STANCE) * pace.period + k * pace.period / 2
         lift = land - (1.0 - STANCE) * pace.period
         far = float(np.linalg.norm(step.ball - places[side][0]))
         share = min(far / (walk.short * pace.stride), 1.0)  # no push-off and heel landing in short steps
@@ -212,7 +212,7 @@ def _as_swings(trip: Trip, steps: list[Footfall], first: int, how: Pace, context
         turns.append(Turn(lift, land, (before + step.heading) / 2 if k + 1 < len(steps) else step.heading))
         before = step.heading
         landings.append(land)
-    route = Route(trip.start, landings[-1], tuple(landings), first, how.share, how.name)
+    route = Route(request.start, landings[-1], tuple(landings), first, how.share, how.name)
     return WalkSteps(route, (tuple(swings[0]), tuple(swings[1])), tuple(_joined(turns)), least)
 
 

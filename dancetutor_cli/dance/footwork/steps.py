@@ -87,8 +87,8 @@ def _goals(row: Row, footing: Footing, columns: list[list[int]]) -> Goals:
         side = 1 - foot.side
         ball, yaw = goals.get(side, (panels[columns[side]].mean(axis=0), yaws[side]))
         other = Pose(ball, footing.toes(footing.feet[side], yaw))
-        wish = columns[foot.side], row.play.part[row.index], yaws[foot.side], row.jump_cut, row.following(foot.side)
-        goals[foot.side] = landing(footing, foot, Goal(*wish), other)
+        wanted = columns[foot.side], row.play.part[row.index], yaws[foot.side], row.jump_cut, row.following(foot.side)
+        goals[foot.side] = landing(footing, foot, Goal(*wanted), other)
     return [goals[0], goals[1]]
 
 

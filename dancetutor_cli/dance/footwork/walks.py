@@ -13,7 +13,7 @@ from dancetutor_cli.dance.context import HALF_PANEL, Context
 from dancetutor_cli.dance.footwork.footfalls import (
     Footfall,
     Stand,
-    Trip,
+    WalkRequest,
     WalkSteps,
     footsteps,
     room,
@@ -60,7 +60,7 @@ def walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropos
     away = np.array([_place_off_pad(ground, side, walk.beside), goal.middle[1]])
     begin = stand_at(away, heading, settings)
     ready = min(plan.first - walk.settle, busy - walk.settle - walk.arrived)
-    steps = footsteps(Trip(begin, goal, heading, -walk.early, ready), gait, plan.lead, context)
+    steps = footsteps(WalkRequest(begin, goal, heading, -walk.early, ready), gait, plan.lead, context)
     return None if steps is None else WalkProposal(steps, goal, begin)
 
 
@@ -82,7 +82,7 @@ def walk_off(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropo
         goal = stand_at(np.array([_place_off_pad(ground, side, walk.beside), 0.0]), whole + heading, settings)
         for late in (0.0, 0.5, 1.0, np.inf):
             ready = plan.last + walk.leave + late
-            steps = footsteps(Trip(begin, goal, whole + heading, start, ready), gait, plan.lead, context)
+            steps = footsteps(WalkRequest(begin, goal, whole + heading, start, ready), gait, plan.lead, context)
             if steps is not None:
                 found.append(WalkProposal(steps, goal))
                 break
@@ -137,7 +137,7 @@ def walk_there(
     whole = 2 * np.pi * round(begin.heading / (2 * np.pi))
     goal = stand_at(np.array([_nearest(places_along(context.squares, lead), targets), 0.0]), whole, settings)
     way = whole + np.copysign(np.radians(walk.sideways), goal.middle[0] - begin.middle[0])
-    steps = footsteps(Trip(begin, goal, way, wait[0] + walk.pause, wait[1] - walk.rest), gait, lead, context)
+    steps = footsteps(WalkRequest(begin, goal, way, wait[0] + walk.pause, wait[1] - walk.rest), gait, lead, context)
     if steps is None or steps.room < settings.step.apart - walk.narrower:
         return None
     return WalkProposal(steps, goal)

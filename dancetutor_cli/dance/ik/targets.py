@@ -247,8 +247,8 @@ def _behind_the_chest(hands: tuple[Array, Array], yaw: Array, rate: float, arms:
     drawn = smooth((quick - np.radians(arms.turn_easy)) / np.radians(arms.turn_quick))[:, None]
     drawn = smooth_path(drawn, ones, rate, arms.turn_time)
     spin = np.abs(lately(np.gradient(yaw) * rate, rate, SPUN))  # on and on, not to and fro
-    let_go = smooth((spin - np.radians(arms.spin_easy)) / np.radians(arms.spin_quick))[:, None]
-    near = hang - np.maximum(0.7 * drawn, let_go)[..., None] * way
+    spinning = smooth((spin - np.radians(arms.spin_easy)) / np.radians(arms.spin_quick))[:, None]
+    near = hang - np.maximum(0.7 * drawn, spinning)[..., None] * way
     near[..., 0] -= arms.drawn_in * drawn * np.array([1.0, -1.0])
     near[..., 2] *= 1.0 - arms.drawn_back * drawn
     return quat.rotate(quat.from_axis_angle(UP, late)[:, None], near)

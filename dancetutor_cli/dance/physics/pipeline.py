@@ -14,14 +14,14 @@ from dancetutor_cli.dance.physics.ankles import eased_ankles
 from dancetutor_cli.dance.physics.arms import clear_arms, push_arms_out
 from dancetutor_cli.dance.physics.blend import Blend, mean_distances, mean_poses
 from dancetutor_cli.dance.physics.legs import restore_mass_path, risen, soft_legs
-from dancetutor_cli.dance.physics.plants import Plants, flatten_toes, let_go, planted, tidied
+from dancetutor_cli.dance.physics.plants import Plants, flatten_toes, planted, release_rolling_feet, tidied
 from dancetutor_cli.dance.physics.pushes import (
     Actor,
-    Blow,
     BreakableSoles,
+    ChestForces,
+    Impulse,
     Push,
     StiffKnees,
-    Struck,
     Stumble,
     disturbed,
     parse_push,
@@ -61,38 +61,38 @@ class RagdollResult:
 
 
 @dataclass(frozen=True, slots=True)
-class Wishes:
+class RagdollOptions:
     """The changes of a motion besides its style.
 
     corrections : of `CORRECTIONS`, for captured motion: knees that pop, feet that skate
-    pushes, trips : disturbances of the dancer
+    pushes, stumbles : disturbances of the dancer
     own_legs : legs stay as the ragdoll has them, unless feet are corrected or the dancer is disturbed
     """
 
     corrections: tuple[str, ...] = ()
     pushes: tuple[Push, ...] = ()
-    trips: tuple[Stumble, ...] = ()
+    stumbles: tuple[Stumble, ...] = ()
     own_legs: bool = False
 
-    def within(self, start: float, end: float) -> Wishes:
+    def within(self, start: float, end: float) -> RagdollOptions:
         """Return the same with only the pushes and trips between two seconds."""
-        pushes = tuple(push for push in self.pushes if start <= push.second <= end)
-        return replace(self, pushes=pushes, trips=tuple(trip for trip in self.trips if start <= trip.second <= end))
+        pushes = tuple(one for one in self.pushes if start <= one.second <= end)
+        return replace(self, pushes=pushes, stumbles=tuple(one for one in self.stumbles if start <= one.second <= end))
 
 
-def wishes_of(push: Sequence[str], trip: Sequence[float], rate: float = 1.0) -> Wishes:
+def parse_ragdoll_options(push: Sequence[str], trip: Sequence[float], rate: float = 1.0) -> RagdollOptions:
     """Return pushes and trips from the command line (seconds of the song) as pushes and trips in music at a rate.
 
     Raises UsageError for a text that is not a push.
     """
     pushes = map(parse_push, push)
-    return Wishes(
+    return RagdollOptions(
         pushes=tuple(replace(one, second=heard(one.second, rate)) for one in pushes),
-        trips=tuple(Stumble(heard(second, rate)) for second in trip),
+        stumbles=tuple(Stumble(heard(second, rate)) for second in trip),
     )
 
 
-def through_ragdoll(motion: Motion, blend: Blend, wishes: Wishes = Wishes()) -> RagdollResult:
+def through_ragdoll(motion: Motion, blend: Blend, options: RagdollOptions = RagdollOptions()) -> RagdollResult:
     """Let the ragdolls of the styles of a blend follow a motion of a skeleton with the dancer's joints.
 
     Joints without a body keep their turns. Feet keep their places in the world, unless corrected. Times stay, and
@@ -109,26 +109,26 @@ def through_ragdoll(motion: Motion, blend: Blend, wishes: Wishes = Wishes()) -> 
     4. Feet get the places of the input, unless a push makes the dancer stagger.
     5. In a dance, arms, weight and palms are put back (`_put_back`); captured motion is corrected (`_corrected`).
     """
-    given, blows = disturbed(motion, wishes.pushes, wishes.trips)
+    given, impulses = disturbed(motion, options.pushes, options.stumbles)
     styles, shares = blend.within(given.times)
     limits = any(style.limits for style in styles)
-    runs = [_followed(given, style, wishes, blows) for style in styles]
+    runs = [_followed(given, style, options, impulses) for style in styles]
     distances = mean_distances([run.distances for run in runs], given.times, shares)
-    free, calm = 1.0 - _pressing(given), _undisturbed(given, wishes)
+    free, calm = 1.0 - _pressing(given), _undisturbed(given, options)
     rotations, root = mean_poses([_read(run.at, *run.made, given.times) for run in runs], shares)
     rotations = quat.slerp(given.rotations, rotations, free[:, None])
     root = given.root + free[:, None] * (root - given.root)
     if limits:
         rotations = restrained(given.skeleton, rotations, given.times, free * calm)
-    if wishes.own_legs and not (wishes.pushes or wishes.trips or "feet" in wishes.corrections):
+    if options.own_legs and not (options.pushes or options.stumbles or "feet" in options.corrections):
         return RagdollResult(_with_poses(given, Poses(rotations, root)), distances)
     feet = feet_of(given.skeleton, given.rotations, given.root)
-    goal, feet, missed = recovered(given, feet, root, wishes.pushes)
-    if wishes.corrections:
-        poses, plants = _corrected(goal, Poses(rotations, root), feet, runs[0], wishes.corrections, limits)
+    goal, feet, missed = recovered(given, feet, root, options.pushes)
+    if options.corrections:
+        poses, plants = _corrected(goal, Poses(rotations, root), feet, runs[0], options.corrections, limits)
     else:
         poses, plants = _put_back(goal, Poses(rotations, root), feet, calm, free), None
-    noted = with_push_notes(_with_poses(goal, poses), goal.root, wishes.pushes, missed)
+    noted = with_push_notes(_with_poses(goal, poses), goal.root, options.pushes, missed)
     return RagdollResult(noted, distances, plants)
 
 
@@ -164,7 +164,7 @@ def _corrected(
     rotations, root = poses  # the turns of toes are changed in place
     held, plants = np.ones((len(root), 2)), None
     if run.soles is not None:
-        plants = let_go(skeleton, feet, _at_keys(run.soles.plants(), run.at, times))
+        plants = release_rolling_feet(skeleton, feet, _at_keys(run.soles.plants(), run.at, times))
         feet, _ = planted(skeleton, feet, plants)
         hips = world_transforms(skeleton, rotations, root)[0][:, [skeleton.index(f"{s}_hip") for s in "lr"]]
         feet, plants, held = keep_feet_still(skeleton, feet, plants, times, hips)
@@ -191,10 +191,10 @@ def _corrected(
     return Poses(turned, place), plants
 
 
-def _undisturbed(motion: Motion, wishes: Wishes) -> Array:
+def _undisturbed(motion: Motion, options: RagdollOptions) -> Array:
     """Return how undisturbed (f,) the motion is, 0 to 1: less during a push or trip, and for a while after it."""
     out = np.ones(len(motion.times))
-    for second in (*(p.second for p in wishes.pushes), *(t.second for t in wishes.trips)):
+    for second in (*(p.second for p in options.pushes), *(t.second for t in options.stumbles)):
         since = motion.times - second
         out *= 1.0 - smooth(since / AFTERMATH + 1.0) * smooth((AFTERMATH + 0.7 - since) / AFTERMATH)
     return out
@@ -225,7 +225,7 @@ class _Run(NamedTuple):
     soles: BreakableSoles | None
 
 
-def _followed(motion: Motion, style: Style, wishes: Wishes, blows: Sequence[Blow]) -> _Run:
+def _followed(motion: Motion, style: Style, options: RagdollOptions, impulses: Sequence[Impulse]) -> _Run:
     """Let the ragdoll of one style follow a motion."""
     skeleton, rate = motion.skeleton, style.body.update_rate
     bones = bones_of(skeleton)
@@ -235,10 +235,10 @@ def _followed(motion: Motion, style: Style, wishes: Wishes, blows: Sequence[Blow
     given = _resampled(motion, at, style.body.sample_rate)
     ragdoll = Ragdoll(skeleton, bones, points, style)
     aimed = follow_all(skeleton, *given, style)
-    soles = BreakableSoles(ragdoll, *aimed) if "feet" in wishes.corrections else None
-    actors: list[Actor] = [StiffKnees(ragdoll)] if "knees" in wishes.corrections else []
-    if blows:
-        actors.append(Struck(ragdoll, len(at), float(at[0]), blows))
+    soles = BreakableSoles(ragdoll, *aimed) if "feet" in options.corrections else None
+    actors: list[Actor] = [StiffKnees(ragdoll)] if "knees" in options.corrections else []
+    if impulses:
+        actors.append(ChestForces(ragdoll, len(at), float(at[0]), impulses))
     made = simulate(ragdoll, *aimed, float(at[0]), actors + ([soles] if soles else []))
     first = int(BEFORE * rate)
     shown = tuple(p for p in points if not p.extra)

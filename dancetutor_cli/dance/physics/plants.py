@@ -65,8 +65,8 @@ def tidied(plants: Plants, rate: float) -> Plants:
     return Plants(*out)
 
 
-def let_go(skeleton: Skeleton, feet: AnkleTracks, plants: Plants) -> Plants:
-    """The holds without beginnings and ends in which a foot on one end alone is far from its place in the flat stand.
+def release_rolling_feet(skeleton: Skeleton, feet: AnkleTracks, plants: Plants) -> Plants:
+    """Return the holds without beginnings and ends in which a foot rolls: on one end alone, far from the flat stand.
 
     Feet land and leave over heel and toe tips, and roll on: longer holds would drag the body after them.
     """

@@ -125,7 +125,7 @@ class BreakableSoles(Actor):
 # push is too strong: then she staggers, and misses the notes of that time. A caught foot is late, and misses the notes
 # that it cannot reach in time.
 
-Blow = tuple[float, Array]  # second, and force (3,) in newtons, world
+Impulse = tuple[float, Array]  # second, and force (3,) in newtons, world
 LASTS = 0.15  # seconds that a push acts, and that an obstacle holds a foot
 CHEST = 0.10  # metres over vt4 at which a push strikes
 SOFT = 1e-4  # least share of its stiffness that a spring keeps: 32 Hz become 0.32
@@ -189,16 +189,16 @@ def _number(text: str, word: str, what: str) -> float:
     return value
 
 
-class Struck(Actor):
+class ChestForces(Actor):
     """Forces on the chest, and the softer springs while they act."""
 
-    def __init__(self, ragdoll: Ragdoll, steps: int, start: float, blows: Sequence[Blow]) -> None:
+    def __init__(self, ragdoll: Ragdoll, steps: int, start: float, impulses: Sequence[Impulse]) -> None:
         """steps : of the simulation, the first at second `start`"""
         times = start + np.arange(steps) / ragdoll.style.body.update_rate
         self.chest = next(k for k, bone in enumerate(ragdoll.bones) if bone.name == "vt4") + 1
         self.force = np.zeros((len(times), 3))
         soft = np.zeros(len(times))
-        for second, force in blows:
+        for second, force in impulses:
             since = times - second
             self.force[(since >= 0) & (since < LASTS)] += force
             soft = np.maximum(soft, smooth(since / 0.03 + 1) * smooth((BACK - since) / (BACK - LASTS)))
@@ -237,7 +237,7 @@ def force_of(push: Push, motion: Motion) -> Array:
     return push.newtons * np.array([np.sin(angle), 0.0, np.cos(angle)])
 
 
-def catch_foot(motion: Motion, feet: AnkleTracks, trip: Stumble) -> tuple[AnkleTracks, Array, float, int]:
+def catch_foot(motion: Motion, feet: AnkleTracks, stumble: Stumble) -> tuple[AnkleTracks, Array, float, int]:
     """Return the feet, one of them caught; the force (3,) that throws the dancer; the second; and the caught foot.
 
     The toes in the motion's rotations are late, too; they are changed in place. Raises UsageError if no foot is in the
@@ -245,9 +245,9 @@ def catch_foot(motion: Motion, feet: AnkleTracks, trip: Stumble) -> tuple[AnkleT
     """
     down = float(feet.places[..., 1].min())
     high = feet.places[..., 1] > down + 0.02
-    late = np.flatnonzero(high.any(axis=1) & (motion.times >= trip.second))
+    late = np.flatnonzero(high.any(axis=1) & (motion.times >= stumble.second))
     if not len(late):
-        raise UsageError(f"--trip {trip.second:g}: no foot is in the air after that")
+        raise UsageError(f"--trip {stumble.second:g}: no foot is in the air after that")
     first = int(late[0])
     side = int(np.argmax(feet.places[first, :, 1]))
     start = float(motion.times[first])
@@ -333,28 +333,28 @@ def without(motion: Motion, missed: Sequence[Contact], note: str, at: float) -> 
     return replace(motion, contacts=kept, notes=(*motion.notes, note + tail))
 
 
-def disturbed(motion: Motion, pushes: Sequence[Push], trips: Sequence[Stumble]) -> tuple[Motion, list[Blow]]:
+def disturbed(motion: Motion, pushes: Sequence[Push], stumbles: Sequence[Stumble]) -> tuple[Motion, list[Impulse]]:
     """Return the motion with feet that trips catch, and the forces on the dancer.
 
     Raises UsageError for a push or trip outside of the motion, or without a foot in the air.
     """
     start, end = float(motion.times[0]), float(motion.times[-1])
-    asked = [("--push", push.second) for push in pushes] + [("--trip", trip.second) for trip in trips]
+    asked = [("--push", push.second) for push in pushes] + [("--trip", stumble.second) for stumble in stumbles]
     for name, second in asked:
         if not start <= second <= end:
             raise UsageError(f"{name} {second:g}: the motion lasts from {start:.3f} s to {end:.3f} s")
-    blows = [(push.second, force_of(push, motion)) for push in pushes]
-    for trip in trips:
+    impulses = [(push.second, force_of(push, motion)) for push in pushes]
+    for stumble in stumbles:
         motion = replace(motion, rotations=motion.rotations.copy())
         feet = feet_of(motion.skeleton, motion.rotations, motion.root)
-        feet, force, at, side = catch_foot(motion, feet, trip)
-        blows.append((at, force))
+        feet, force, at, side = catch_foot(motion, feet, stumble)
+        impulses.append((at, force))
         missed = missed_by_trip(motion, at, side)
         rotations, root = repinned(motion.skeleton, Poses(motion.rotations, motion.root), feet)
         name = ("left", "right")[side]
         note = f"tripped at {at:.3f} s: the {name} foot is caught"
         motion = without(replace(motion, rotations=rotations, root=root), missed, note, at)
-    return motion, blows
+    return motion, impulses
 
 
 def recovered(

@@ -45,7 +45,7 @@ def contact_figures(motion: Motion) -> tuple[tuple[Figure, ...], Array]:
         Figure("contacts", float(len(errors)), ""),
         Figure("contact error", worst, "ms", 1.0),
         Figure("contacts missed", float(missed.sum()), "", 0.0),
-        Figure("notes not played", float(len(motion.let_go)), ""),
+        Figure("notes not played", float(len(motion.dropped)), ""),
         Figure("soles with the middle on the panel", on, "%"),
         Figure(f"soles with the middle at least {100 * INSIDE:g} cm inside the panel", well, "%"),
     )

@@ -196,7 +196,7 @@ class HeightPath:
 
 
 @dataclass(frozen=True, slots=True)
-class HeightWish:
+class HeightGoals:
     """The targets and limits of the height of the centre of mass at n even times, metres.
 
     times : (n,) seconds; target : (n,) the preferred height; highest : (n,) the largest allowed height
@@ -213,7 +213,7 @@ class HeightWish:
     tempo: Array
 
 
-def height_path(wish: HeightWish, flights: Array, body: BodySettings) -> HeightPath:
+def height_path(goals: HeightGoals, flights: Array, body: BodySettings) -> HeightPath:
     """Compute the height h of the centre of mass, as one quadratic programme on nodes k that are uneven in time.
 
         minimise    sum_k c_k (h_k - target_k)^2  +  s^6 sum_k |d3(h - above)/dt3|_k^2
@@ -228,13 +228,13 @@ def height_path(wish: HeightWish, flights: Array, body: BodySettings) -> HeightP
     ----------
     flights : (k, 2) of take-off and landing, seconds, in order; body : settings
     """
-    times = wish.times
+    times = goals.times
     flights = flights[(flights[:, 0] > times[0] + 0.05) & (flights[:, 1] < times[-1] - 0.05)]
     flights = _separate_flights(flights)
     nodes, flying = _nodes(times[0], times[-1], flights)
     inner = np.arange(1, len(nodes) - 1)
     in_flight = flying[inner - 1] & flying[inner]
-    problem = _objective(nodes, flying, in_flight, wish, body)
+    problem = _objective(nodes, flying, in_flight, goals, body)
     acceleration = _second(nodes) / GRAVITY
     standing = ~in_flight
     touching = (flying[inner - 1] | flying[inner])[standing]
@@ -243,7 +243,7 @@ def height_path(wish: HeightWish, flights: Array, body: BodySettings) -> HeightP
         inner[standing] - 1, acceleration[standing],
         np.where(touching, -1.0, body.least_force - 1.0), np.full(n, body.most_force - 1.0), GIVE_FORCE,
     )  # fmt: skip
-    every, top = np.arange(len(nodes)), np.interp(nodes, times, wish.highest)
+    every, top = np.arange(len(nodes)), np.interp(nodes, times, goals.highest)
     room = Limits(every, np.full((len(nodes), 1), 1 / UNIT), np.full(len(nodes), -np.inf), top / UNIT, GIVE_ROOM)
     solution = solve_surely(problem, [force, room], f"the height of the body {span(times)}")
     return HeightPath(nodes, solution.x, _slopes(nodes, solution.x, flying), solution.softened)
@@ -293,10 +293,10 @@ def _third(t: Array) -> Array:
 
 
 def _objective(
-    nodes: Array, flying: Flags, in_flight: Flags, wish: HeightWish, body: BodySettings
+    nodes: Array, flying: Flags, in_flight: Flags, goals: HeightGoals, body: BodySettings
 ) -> BandedLeastSquares:
     n = len(nodes)
-    wanted, above, firm = (np.interp(nodes, wish.times, x) for x in (wish.target, wish.above, wish.firm))
+    wanted, above, firm = (np.interp(nodes, goals.times, x) for x in (goals.target, goals.above, goals.firm))
     problem = BandedLeastSquares(n, 1)
     step = np.gradient(nodes) * NODE_RATE
     before, after = np.concatenate(([False], flying)), np.concatenate((flying, [False]))
@@ -305,7 +305,7 @@ def _objective(
     inner = np.flatnonzero(in_flight)
     fall = _second(nodes)[in_flight] / GRAVITY
     problem.add(inner, fall, np.full(len(inner), 1e6), np.full((len(inner), 1), -1.0))
-    slow = body.height_calm + (body.height_smooth - body.height_calm) * np.interp(nodes, wish.times, wish.tempo)
+    slow = body.height_calm + (body.height_smooth - body.height_calm) * np.interp(nodes, goals.times, goals.tempo)
     jerk = _third(nodes) * slow[1:-2, None] ** 3 / UNIT
     parts = np.stack([flying[k : n - 3 + k] for k in range(3)], axis=1)
     weight = np.where(parts.any(axis=1), 0.02, 1.0) * np.where(parts.all(axis=1), 0.0, step[1:-2])

@@ -30,7 +30,7 @@ from dancetutor_cli.dance.trajectory.facing import (
 from dancetutor_cli.dance.trajectory.groove import Occupation, groove_of, stance
 from dancetutor_cli.dance.trajectory.height import (
     Height,
-    HeightWish,
+    HeightGoals,
     height_path,
     jump_crouch,
     jump_drive,
@@ -132,9 +132,9 @@ def body_trajectory(
     leg = leg + catch * (settings.jump.catch - leg)
     most = settings.body.soft_reach + push * max(settings.jump.push - settings.body.soft_reach, 0.0)
     most = np.where(feet[0].down | feet[1].down, most, settings.jump.reach)
-    legs = LegWish(leg, most, sink, narrow * groove.bob, bent, settings.jump.drive * np.maximum(push, catch), tempo)
+    legs = LegGoals(leg, most, sink, narrow * groove.bob, bent, settings.jump.drive * np.maximum(push, catch), tempo)
     stretched = feet if known is None or known.push_off is None else raised(feet, known.push_off)
-    mass_height = height_path(_wish(stretched, course, context, legs), plan.flights, settings.body)
+    mass_height = height_path(_height_goals(stretched, course, context, legs), plan.flights, settings.body)
     chest, head = chest_and_head(plan, course, gaze_ahead(plan, times, settings.walk), settings)
     upright = (1.0 - reached.max(axis=1)) * (1.0 - own)
     loose = (1.0 - held) * upright
@@ -240,12 +240,12 @@ def _slowness(y: Array, acceleration: Array, least: float) -> Array:
 
 
 @dataclass(frozen=True, slots=True)
-class LegWish:
+class LegGoals:
     """The wanted stance at n times.
 
     length : (n,) hip to ankle; most : (n,) at most; sink : (n,) how far a plant or a beat lets her sink, metres
     bob : (n,) as in `groove.Groove`: a wish that limits nothing
-    bent : (n, 2) as in `facing.bent_down`; firm, tempo : (n,) as in `HeightWish`
+    bent : (n, 2) as in `facing.bent_down`; firm, tempo : (n,) as in `HeightGoals`
     """
 
     length: Array
@@ -257,7 +257,7 @@ class LegWish:
     tempo: Array
 
 
-def _wish(feet: Feet, course: Course, context: Context, legs: LegWish) -> HeightWish:
+def _height_goals(feet: Feet, course: Course, context: Context, legs: LegGoals) -> HeightGoals:
     """The wanted and the highest allowed height of the centre of mass."""
     settings, above = context.settings, course.above[:, 1]
     wanted = np.full(len(course.yaw), np.inf)
@@ -274,7 +274,7 @@ def _wish(feet: Feet, course: Course, context: Context, legs: LegWish) -> Height
     wanted -= legs.sink + legs.bob
     share, depth = legs.bent.T
     wanted = wanted + share * (settings.hands.pelvis - depth - wanted)
-    return HeightWish(course.times, wanted + above, highest - legs.sink + above, above, legs.firm, legs.tempo)
+    return HeightGoals(course.times, wanted + above, highest - legs.sink + above, above, legs.firm, legs.tempo)
 
 
 def stepping(feet: Feet, settings: MotionSettings) -> Array:

@@ -8,21 +8,21 @@ import numpy as np
 
 from dancetutor_cli.dance.rig.body import GRAVITY
 from dancetutor_cli.dance.settings import default_settings
-from dancetutor_cli.dance.trajectory.height import HeightWish, height_path
+from dancetutor_cli.dance.trajectory.height import HeightGoals, height_path
 
 FLIGHT = np.array([[1.0, 1.2]])
 BODY = default_settings().body
 
 
-def wish(times: np.ndarray) -> HeightWish:  # type: ignore[type-arg]
+def goals(times: np.ndarray) -> HeightGoals:  # type: ignore[type-arg]
     still = np.full(len(times), 0.9)
-    return HeightWish(times, still, still + 0.08, np.zeros(len(times)), np.zeros(len(times)), np.ones(len(times)))
+    return HeightGoals(times, still, still + 0.08, np.zeros(len(times)), np.zeros(len(times)), np.ones(len(times)))
 
 
 def test_legs_that_reach_less_far_in_the_air_lower_the_flight_and_leave_gravity_alone() -> None:
     times = np.arange(0.0, 2.2, 1 / 240)
-    free = height_path(wish(times), FLIGHT, BODY)
-    low = replace(wish(times), highest=np.where((times > 1.1) & (times < 1.2), 0.92, 0.98))
+    free = height_path(goals(times), FLIGHT, BODY)
+    low = replace(goals(times), highest=np.where((times > 1.1) & (times < 1.2), 0.92, 0.98))
     held = height_path(low, FLIGHT, BODY)
     inside = np.linspace(1.02, 1.18, 9)
     assert free.at(inside).max() > 0.925

@@ -30,7 +30,7 @@ def motion() -> Motion:
 
 def test_only_what_she_plays_is_a_contact(motion: Motion) -> None:
     assert [c.row for c in motion.contacts] == [0, 1, 3, 5, 6]
-    assert [(one.row, one.column, one.reason) for one in motion.let_go] == [
+    assert [(one.row, one.column, one.reason) for one in motion.dropped] == [
         (2, 1, DropReason.LEAP),
         (4, 1, DropReason.LEAP),
     ]
@@ -43,12 +43,12 @@ def test_only_what_she_plays_is_a_contact(motion: Motion) -> None:
 
 def test_a_section_reports_only_its_own() -> None:
     one = bake(chart().timing, trill(), pad(), fps=30.0, section=(0.7, 1.9))
-    assert [g.row for g in one.let_go] == [4]
+    assert [g.row for g in one.dropped] == [4]
 
 
 def test_files_have_them(motion: Motion, tmp_path: Path) -> None:
     write_npz(tmp_path / "x.npz", motion)
-    assert read_npz(tmp_path / "x.npz").let_go == motion.let_go
+    assert read_npz(tmp_path / "x.npz").dropped == motion.dropped
     data = moves_data(plan_of(chart().timing, trill(), pad()), "T", "c", (-10.0, 10.0))
     assert data["let_go"] == [
         {"second": 0.675, "column": 1, "why": "leap"},

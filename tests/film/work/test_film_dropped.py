@@ -74,9 +74,9 @@ def test_runs_at_all_rates_let_the_same_notes_go(tmp_path: Path) -> None:
     two = prepared(tmp_path, rates=(0.5, 1.0))
     assert sorted(two.plan.motions) == [0.5, 1.0]
     for (motion,) in two.plan.motions.values():
-        assert len(motion.let_go) == 2 and len({one.reason for one in motion.let_go}) == 1
+        assert len(motion.dropped) == 2 and len({one.reason for one in motion.dropped}) == 1
     slow = prepared(tmp_path, rates=(0.5,))
-    assert not slow.plan.motions[0.5][0].let_go and not (slow.plan.notes.limb == Limb.UNPLAYED).any()
+    assert not slow.plan.motions[0.5][0].dropped and not (slow.plan.notes.limb == Limb.UNPLAYED).any()
 
 
 def test_a_roll_that_no_hand_keeps_goes_dark_where_it_is_let_go(tmp_path: Path) -> None:
