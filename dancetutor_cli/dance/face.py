@@ -28,7 +28,6 @@ from dancetutor_cli.dance.trajectory.posture import Trajectory
 from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.dance.waits import Song, slowly, song_of
 
-ACROSS = np.array([1.0, 0.0, 0.0])
 BLINK_SEED, PEEK_SEED, SMILE_SALT = 20140513, 20260611, 3
 
 
@@ -138,7 +137,7 @@ def _look_at(skeleton: Skeleton, poses: Poses, which: NDArray[np.int64], peeks: 
         way = quat.rotate(head, peeks.places[which] - places[:, j])
         aside = np.clip(np.arctan2(way[:, 0], np.maximum(way[:, 2], 0.05)), -most, most)
         down = np.clip(np.arctan2(-way[:, 1], np.hypot(way[:, 0], way[:, 2])), 0.0, np.radians(numbers.down))
-        goal = quat.multiply(quat.from_axis_angle(UP, aside), quat.from_axis_angle(ACROSS, down))
+        goal = quat.multiply(quat.from_axis_angle(UP, aside), quat.from_axis_angle(quat.LEFT, down))
         poses.rotations[which, j] = quat.slerp(poses.rotations[which, j], goal, peeks.share[which])
         lowest = np.maximum(lowest, down)
     return lowest
@@ -146,7 +145,7 @@ def _look_at(skeleton: Skeleton, poses: Poses, which: NDArray[np.int64], peeks: 
 
 def _set(skeleton: Skeleton, rotations: Array, joint: str, angle: Array) -> None:
     if joint in skeleton.names:
-        rotations[:, skeleton.index(joint)] = quat.from_axis_angle(ACROSS, angle)
+        rotations[:, skeleton.index(joint)] = quat.from_axis_angle(quat.LEFT, angle)
 
 
 def eyelids(times: Array, every: float, blink: float) -> Array:

@@ -25,8 +25,6 @@ from dancetutor_cli.dance.waits import WaitMotion
 
 # Head and eyes: after all other movements they turn to the screen, as far as a neck can (thesis 5.7).
 
-SIDEWAYS = np.array([1.0, 0.0, 0.0])
-
 
 def look(poses: Poses, body: Trajectory, at: Array, context: Context) -> None:
     """Turn neck, head and eyes at times `at` (f,), in place."""
@@ -42,7 +40,7 @@ def look(poses: Poses, body: Trajectory, at: Array, context: Context) -> None:
     turned = np.clip(head_yaw - chest_yaw, -most, most)
     head_yaw = chest_yaw + (1.0 + (settings.look.bent_yaw - 1.0) * bent) * turned
     lean = settings.look.head_tilt + (settings.look.bent_tilt - settings.look.head_tilt) * bent
-    chin = quat.from_axis_angle(SIDEWAYS, -np.radians(settings.look.chin) * (1.0 - bent))
+    chin = quat.from_axis_angle(quat.LEFT, -np.radians(settings.look.chin) * (1.0 - bent))
     # in a deep bend, hands pull the chest askew, and the neck of a head that kept its direction in the world would
     # twist
     meant = quat.slerp(chest, leaning(tilt, chest_yaw), bent)
@@ -146,8 +144,6 @@ def _there(times: Array, start: float, end: float, turn: float) -> Array:
 # Additive layers as in the blog of the project's sources: the main rotation first, then the layer. They change no joint
 # between the root and a foot, so no contact moves. They are off while a palm is on the floor.
 
-ACROSS, FRONT = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
-
 
 @dataclass(frozen=True, slots=True)
 class Activity:
@@ -193,12 +189,12 @@ def add_layers(poses: Poses, times: Array, doing: Activity, context: Context) ->
         )
     glance, neck = doing.glances, context.settings.look.neck_share
     bob = np.radians(settings.head_bob) * stepping * free + doing.waiting.tilt + glance.tilt
-    _turn(skeleton, rotations, "skullbase", FRONT, -bob)
+    _turn(skeleton, rotations, "skullbase", quat.AHEAD, -bob)
     nod = np.radians(settings.breath_nod) * breath + np.radians(groove.nod) * beat
-    _turn(skeleton, rotations, "vc4", ACROSS, nod)
+    _turn(skeleton, rotations, "vc4", quat.LEFT, nod)
     for joint, share in (("vc4", neck), ("skullbase", 1.0 - neck)):
         _turn(skeleton, rotations, joint, UP, share * glance.yaw)
-        _turn(skeleton, rotations, joint, ACROSS, -share * glance.pitch)
+        _turn(skeleton, rotations, joint, quat.LEFT, -share * glance.pitch)
     for side in "lr":
         _turn(skeleton, rotations, f"{side}_eyeball_joint", UP, glance.eyes)
 
@@ -207,9 +203,9 @@ def _shrug(skeleton: Skeleton, rotations: Array, side: str, angle: Array) -> Non
     """Raise a shoulder by turning its collarbone. The arm rises with it and hangs as before, because hands would
     otherwise swing into thighs.
     """
-    _turn(skeleton, rotations, f"{side}_sternoclavicular", FRONT, angle)
+    _turn(skeleton, rotations, f"{side}_sternoclavicular", quat.AHEAD, angle)
     j = skeleton.index(f"{side}_shoulder")
-    rotations[:, j] = quat.multiply(quat.from_axis_angle(FRONT, -angle), rotations[:, j])
+    rotations[:, j] = quat.multiply(quat.from_axis_angle(quat.AHEAD, -angle), rotations[:, j])
 
 
 def _turn(skeleton: Skeleton, rotations: Array, joint: str, axis: Array, angle: Array) -> None:

@@ -22,6 +22,11 @@ def smooth(s: ArrayLike) -> Array:
     return np.asarray(s**3 * (10.0 + s * (6.0 * s - 15.0)))
 
 
+def soft_excess(x: ArrayLike, over: float) -> Array:
+    """Return a smooth max(x, 0): the difference, at most 0.7 `over`, is spread over a few `over` around x = 0."""
+    return np.asarray(over * np.logaddexp(0.0, np.asarray(x, dtype=np.float64) / over))
+
+
 # Smooth paths through targets over time, near the targets and with little jerk: turns, travel and height of the body.
 
 

@@ -236,7 +236,7 @@ def _turns(angles: Array, straight: Array, edges: Edges) -> tuple[Array, Array]:
     angles : (m, 2) radians that the sole rolls, its larger x up, and that its heel rises
     """
     roll = quat.from_axis_angle(quat.rotate(straight, edges.lines[_down(angles)]), angles[:, 0])
-    rise = quat.from_axis_angle(quat.rotate(straight, np.array([1.0, 0.0, 0.0])), angles[:, 1])
+    rise = quat.from_axis_angle(quat.rotate(straight, quat.LEFT), angles[:, 1])
     return roll, quat.multiply(roll, rise)
 
 

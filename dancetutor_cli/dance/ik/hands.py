@@ -15,7 +15,7 @@ from dancetutor_cli.dance.rig.limbs import KNEE, THIGH
 from dancetutor_cli.dance.rig.quaternion import UP
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.settings_arms import ArmSettings, BarSettings
-from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.smoothing import smooth, soft_excess
 from dancetutor_cli.dance.units import Array, Flags
 
 # Targets of the hands, and the upper body from which the arms hang.
@@ -80,10 +80,10 @@ def rest_on_bar(
     The fingers point back, a little outward, and down behind the rail. After a hand has crossed over (`across`), they
     point straight back.
     """
-    dip = quat.from_axis_angle(np.array([1.0, 0.0, 0.0]), -np.radians(settings.dip))
+    dip = quat.from_axis_angle(quat.LEFT, -np.radians(settings.dip))
     hand = quat.multiply(dip, palm_down(skeleton, side, STRAIGHT_BACK if across else BACKWARD[side]))
     out = quat.rotate(dip, np.array([0.0, bar.radius, 0.0]))  # from the middle of the rail to the palm on it
-    along = np.asarray(x)[..., None] * np.array([1.0, 0.0, 0.0])
+    along = np.asarray(x)[..., None] * quat.LEFT
     over = np.array([0.0, bar.height, bar.behind]) + out - quat.rotate(hand, palm_points(skeleton)[side].offset)
     return along + over, hand
 
@@ -109,7 +109,8 @@ CLEAR = (0.34, 0.30)  # metres, half axes, aside and ahead, of the ellipse that 
 TRUNK = np.array([0.0, -0.30, 0.02])  # the middle of the ellipse, from the middle of the shoulders
 INWARD = 0.3  # radians around straight inward in which a hand ahead of the trunk counts as behind it
 LEAST = np.pi / 4  # least bearing of the rail for a hand that crosses over, radians inward from straight outward
-SOFT, FIRST, LAST = 8.0, 0.4, 2  # sharpness of the push out of the ellipse; its begin and end on the way to the rail
+SOFT = 0.125  # part of the ellipse's size over which a hand is pushed out of it
+FIRST, LAST = 0.4, 2  # begin and end of this push on the way to the rail
 PIN = 2  # power of a hand's share in the rail by which it turns onto it: later than the elbow, to spare the wrist
 
 
@@ -151,7 +152,7 @@ def _around(wrists: Array, goal: Array, weight: Array, torso: Torso, across: Fla
     there = begin + share * (end - begin)
     distance = far[0] + weight * (far[1] - far[0])
     free = smooth(weight / FIRST) * (1.0 - weight**LAST)
-    distance += free * np.logaddexp(0.0, SOFT * (1.0 - distance)) / SOFT
+    distance += free * soft_excess(1.0 - distance, SOFT)
     bearing = along[0] + weight * (along[1] - along[0])
     there[..., 0] = distance * np.cos(bearing) * [1.0, -1.0]
     there[..., 2] = distance * np.sin(bearing)
@@ -199,7 +200,7 @@ def trunk_clearance(wrists: Array, torso: Torso, axes: tuple[float, float]) -> A
     upright, middle = _trunk_of(torso)
     off = quat.rotate(quat.conjugate(upright), wrists - middle) * [1.0 / axes[0], 0.0, 1.0 / axes[1]]
     far = np.maximum(np.linalg.norm(off, axis=2, keepdims=True), 0.05)
-    beyond = np.logaddexp(0.0, SOFT * (1.0 - far)) / SOFT  # a soft maximum of 0 and 1 - far
+    beyond = soft_excess(1.0 - far, SOFT)  # a soft maximum of 0 and 1 - far
     return quat.rotate(upright, off / far * beyond * [axes[0], 0.0, axes[1]])
 
 
@@ -228,7 +229,7 @@ def hip_clearance(wrists: Array, hips: Hips, arms: ArmSettings) -> Array:
     way[..., 0] -= np.clip(off[..., 0], -arms.hips_half, arms.hips_half)
     way[..., 1] = 0.0
     far = np.linalg.norm(way, axis=2)
-    missing = SOFT_AT_HIPS * np.logaddexp(0.0, (arms.hips_clear - far) / SOFT_AT_HIPS) * low
+    missing = soft_excess(arms.hips_clear - far, SOFT_AT_HIPS) * low
     return np.asarray(quat.rotate(upright, way * (missing / np.maximum(far, 1e-3))[..., None]))
 
 
@@ -273,7 +274,7 @@ def _off_the_thigh(points: Array, hip: Array, thigh: Array, room: float) -> Arra
     way = away - part * thigh
     far = np.linalg.norm(way, axis=2, keepdims=True)
     least = THIGH + part * (KNEE - THIGH) + HALF_HAND + room
-    missing = SOFT_AT_LEGS * np.logaddexp(0.0, (least - far) / SOFT_AT_LEGS)
+    missing = soft_excess(least - far, SOFT_AT_LEGS)
     return np.asarray(way * (missing / np.maximum(far, 1e-3)))
 
 

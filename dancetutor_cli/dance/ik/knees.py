@@ -1,24 +1,19 @@
-"""The directions in which knees point, and how pelvis, spine and chest share a lean."""
+"""The directions in which knees point: between the body's front and the toes, and not against each other."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.dance.foot_path import Feet
 from dancetutor_cli.dance.rig import quaternion as quat
-from dancetutor_cli.dance.rig.body import SIDES, SPINE_SHARES
 from dancetutor_cli.dance.rig.limbs import depth, leg_capsules
-from dancetutor_cli.dance.rig.quaternion import leaning
 from dancetutor_cli.dance.rig.skeleton import Skeleton
-from dancetutor_cli.dance.settings_body import BodySettings, KneeSettings
+from dancetutor_cli.dance.settings_body import KneeSettings
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array
-
-# Knees point between the body's front and the toes, and do not touch each other.
 
 OUTSIDE = 0.002  # metres outside its hip at which a leg does not lean
 LOOKED = 0.03  # metres; legs farther apart are not changed
@@ -143,49 +138,3 @@ def _swivelled(reach: Array, poles: Array, given: Array) -> Array:
     line, ahead = reach / np.linalg.norm(reach, axis=2, keepdims=True), square_to(reach, poles)
     aside = np.cross(line, ahead) * np.array([[-1.0], [1.0]])
     return np.asarray(np.cos(given)[..., None] * ahead + np.sin(given)[..., None] * aside)
-
-
-# How pelvis, spine and chest share a lean, and where the shoulders are then.
-
-SPINE = (0.0, *SPINE_SHARES)  # how far the bones under vl5, vt10 and vt4 are turned from the pelvis to the chest
-
-
-class TrunkPose(NamedTuple):
-    """The posture of a trunk in f frames.
-
-    tilt : (f, 2) radians that the chest leans, as in `quaternion.leaning`; yaw, chest_yaw : (f,) radians
-    listed : (f,) radians that the right hip is lower than the left one because the weight is on one leg
-    """
-
-    tilt: Array
-    yaw: Array
-    chest_yaw: Array
-    listed: Array
-
-
-def torso_rotations(trunk: TrunkPose, settings: BodySettings) -> tuple[Array, Array, Array]:
-    """Return the rotations (f, 4) of pelvis and chest, and how deep (f,) the trunk is bent, 0 to 1."""
-    tilt, yaw = trunk.tilt, trunk.yaw
-    bent = smooth(np.linalg.norm(tilt, axis=1) / np.radians(settings.deep_bend))
-    share = settings.pelvis_lean + (settings.pelvis_bend - settings.pelvis_lean) * bent
-    aside = trunk.listed[:, None] * np.column_stack((-np.cos(yaw), np.sin(yaw)))
-    return leaning(share[:, None] * tilt + aside, yaw), leaning(tilt, trunk.chest_yaw), bent
-
-
-def shoulders_over(skeleton: Skeleton, pelvis: Array, pelvis_rotation: Array, chest: Array, bent: Array) -> Array:
-    """Return where shoulders must be (f, 2, 3) over a pelvis (f, 3): turned about it with the chest.
-
-    For a trunk with `bent` (f,) 1, the shoulders are where an evenly bent spine brings them. With `bent` 0, the lowest
-    joint of the spine has the whole bend.
-    """
-    place, offset = pelvis, skeleton.offsets
-    for name, share in zip(("vl5", "vt10", "vt4"), SPINE, strict=True):
-        rotation = quat.slerp(pelvis_rotation, chest, np.full(len(pelvis), share))
-        place = place + quat.rotate(rotation, offset[skeleton.index(name)])
-    out = []
-    for side in SIDES:
-        shoulder = skeleton.index(f"{side}_shoulder")
-        even = place + quat.rotate(chest, offset[skeleton.parents[shoulder]] + offset[shoulder])
-        stiff = pelvis + quat.rotate(chest, skeleton.rest[shoulder] - skeleton.rest[0])
-        out.append(stiff + bent[:, None] * (even - stiff))
-    return np.stack(out, axis=1)

@@ -24,12 +24,10 @@ from dancetutor_cli.dance.ik.hands import (
 from dancetutor_cli.dance.ik.knees import (
     Hung,
     Legs,
-    TrunkPose,
     knee_poles,
     part_knees,
-    shoulders_over,
-    torso_rotations,
 )
+from dancetutor_cli.dance.ik.trunk import trunk_at
 from dancetutor_cli.dance.plan import Plan, Press
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import SIDES, half_hips, palm_points
@@ -37,7 +35,7 @@ from dancetutor_cli.dance.rig.quaternion import UP, leaning
 from dancetutor_cli.dance.rig.skeleton import beyond
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_arms import ArmSettings
-from dancetutor_cli.dance.smoothing import Controller, follow, sample_path, smooth, smooth_path
+from dancetutor_cli.dance.smoothing import Controller, follow, sample_path, smooth, smooth_path, soft_excess
 from dancetutor_cli.dance.trajectory.facing import crossing_share
 from dancetutor_cli.dance.trajectory.height import jump_swing, tempo_factor
 from dancetutor_cli.dance.trajectory.legs import ankle_of
@@ -116,16 +114,16 @@ def _out_from_a_lean(wrists: Array, torso: Torso, upright: Array, arms: ArmSetti
     higher = np.degrees(np.arcsin(np.clip(across[:, 1] / np.linalg.norm(across, axis=1), -1.0, 1.0)))
     outward = np.array([1.0, -1.0])
     share = smooth((higher[:, None] * outward - arms.aside_from) / (arms.aside_full - arms.aside_from))
-    aside = quat.rotate(upright, np.array([1.0, 0.0, 0.0]))[:, None] * outward[:, None]
+    aside = quat.rotate(upright, quat.LEFT)[:, None] * outward[:, None]
     far = np.sum((wrists - torso.shoulders) * aside, axis=2)
-    missing = np.logaddexp(0.0, (arms.aside_out - far) / ASIDE_SOFT) * ASIDE_SOFT
+    missing = soft_excess(arms.aside_out - far, ASIDE_SOFT)
     return np.asarray((share * missing)[..., None] * aside)
 
 
 def _bent(arm: Array, longest: float) -> Array:
     """What keeps arms (f, 2, 3) from shoulder to wrist softly shorter than `longest`, (f, 2, 3): for bent elbows."""
     far = np.linalg.norm(arm, axis=2, keepdims=True)
-    over = np.logaddexp(0.0, (far - longest) / BENT_SOFT) * BENT_SOFT
+    over = soft_excess(far - longest, BENT_SOFT)
     return np.asarray(-over / np.maximum(far, 1e-9) * arm)
 
 
@@ -136,7 +134,7 @@ def _on_her_own_pad(x: Array, context: Context) -> Array:
     outward, keep = 1.0 - 2.0 * context.sides[0], context.settings.arms.own_pad
     edge = context.ground.low[0] if outward > 0.0 else context.ground.high[0]
     inside = outward * (x - edge) - keep
-    return np.asarray(outward * ASIDE_SOFT * np.logaddexp(0.0, -inside / ASIDE_SOFT))
+    return np.asarray(outward * soft_excess(-inside, ASIDE_SOFT))
 
 
 def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, Array, Array]:
@@ -205,7 +203,7 @@ def _hanging(carried: Array, effort: tuple[Array, Array], swing: tuple[Array, Ar
     arms, (lately, unlike) = context.settings.arms, effort
     bent = (arms.bent + arms.stream_bent * lately) * unlike + arms.carried_bent * carried
     upper = arms.carried_upper * carried - arms.upper_back - arms.stream_back * lately
-    bent = bent - LEVEL_SOFT * np.logaddexp(0.0, (bent + upper - arms.forearm_most) / LEVEL_SOFT)
+    bent = bent - soft_excess(bent + upper - arms.forearm_most, LEVEL_SOFT)
     return bent_arms(swing[0], np.radians(bent), np.radians(upper), swing[1], context)
 
 
@@ -312,13 +310,8 @@ def _lay_down(press: Press, body: Trajectory, context: Context) -> tuple[Array, 
         press.side,
         context.skeleton,
     )
-    ground, height = (sample_path(p, body.times, when) for p in (body.ground, body.height))
-    held = (sample_path(p, body.times, when) for p in (body.tilt, body.yaw, body.chest_yaw, body.listed))
-    trunk = TrunkPose(*held)
-    chest_yaw = trunk.chest_yaw
-    pelvis_rotation, chest, bent = torso_rotations(trunk, context.settings.body)
-    pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
-    shoulders = shoulders_over(skeleton, pelvis, pelvis_rotation, chest, bent)
+    trunk = trunk_at(body, when, context)
+    chest, chest_yaw, shoulders = trunk.chest, trunk.chest_yaw, trunk.shoulders(skeleton)
     panel = np.array([press.target[0], 0.0, press.target[1]])
     away = panel - shoulders[0].mean(axis=0)
     liked = np.arctan2(away[0] + 0.3 * np.sin(chest_yaw[0]), away[2] + 0.3 * np.cos(chest_yaw[0]))
@@ -342,40 +335,35 @@ def _lay_down(press: Press, body: Trajectory, context: Context) -> tuple[Array, 
     return laid[best], poles[best]
 
 
-ACROSS = np.array([1.0, 0.0, 0.0])
 TOES_BEND = np.radians(40.0)  # a foot whose heel is farther up carries its toes
 
 
 def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Context) -> Targets:
     """Targets at the times `at` (f,); `feet` are sampled there, `body` on its own even times."""
     skeleton = context.skeleton
-    ground, height = (sample_path(p, body.times, at) for p in (body.ground, body.height))
-    held = (sample_path(p, body.times, at) for p in (body.tilt, body.yaw, body.chest_yaw, body.listed))
-    trunk = TrunkPose(*held)
-    yaw = trunk.yaw
-    pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
-    pelvis_rotation, chest, bent = torso_rotations(trunk, context.settings.body)
+    trunk = trunk_at(body, at, context)
     gait = walking(plan.walks, at, context.settings.walk)
     if gait is not None:
-        pelvis_rotation, chest = with_gait(gait, pelvis_rotation, chest)
-    shoulders = shoulders_over(skeleton, pelvis, pelvis_rotation, chest, bent)
+        pelvis_rotation, chest = with_gait(gait, trunk.pelvis_rotation, trunk.chest)
+        trunk = trunk._replace(pelvis_rotation=pelvis_rotation, chest=chest)
+    pelvis, shoulders = trunk.pelvis, trunk.shoulders(skeleton)
     ankles = np.stack([ankle_of(f, skeleton, side) for side, f in enumerate(feet)], axis=1)
     straight = [quat.from_axis_angle(UP, f.yaw) for f in feet]
-    soles = [quat.multiply(t, quat.from_axis_angle(ACROSS, f.pitch)) for t, f in zip(straight, feet, strict=True)]
+    soles = [quat.multiply(t, quat.from_axis_angle(quat.LEFT, f.pitch)) for t, f in zip(straight, feet, strict=True)]
     # toes stay level while the heel is up, as far as they bend, and go up with the foot
     toes = [
-        quat.multiply(t, quat.from_axis_angle(ACROSS, f.pitch - np.clip(f.pitch, 0.0, TOES_BEND)))
+        quat.multiply(t, quat.from_axis_angle(quat.LEFT, f.pitch - np.clip(f.pitch, 0.0, TOES_BEND)))
         for t, f in zip(straight, feet, strict=True)
     ]
-    poles = knee_poles(yaw, feet, ankles - pelvis[:, None], half_hips(skeleton), context.settings.knees)
-    hung = Hung(pelvis, pelvis_rotation, ankles)
+    poles = knee_poles(trunk.yaw, feet, ankles - pelvis[:, None], half_hips(skeleton), context.settings.knees)
+    hung = Hung(pelvis, trunk.pelvis_rotation, ankles)
     poles = hung.legs(skeleton, poles).turned(sample_path(body.knees, body.times, at))
     poles = part_knees(skeleton, hung, poles, context.settings.knees)
-    below = Below(Hips(pelvis, pelvis_rotation), hung.legs(skeleton, poles))
-    hands = arm_targets(plan, body, at, Torso(shoulders, chest), below, context)
+    below = Below(Hips(pelvis, trunk.pelvis_rotation), hung.legs(skeleton, poles))
+    hands = arm_targets(plan, body, at, Torso(shoulders, trunk.chest), below, context)
     return Targets(
-        pelvis, pelvis_rotation, chest, shoulders, hands.wrists, hands.rotation, hands.pinned, hands.elbows, ankles,
-        np.stack(soles, axis=1), np.stack(toes, axis=1), poles, hands.pull,
+        pelvis, trunk.pelvis_rotation, trunk.chest, shoulders, hands.wrists, hands.rotation, hands.pinned, hands.elbows,
+        ankles, np.stack(soles, axis=1), np.stack(toes, axis=1), poles, hands.pull,
     )  # fmt: skip
 
 

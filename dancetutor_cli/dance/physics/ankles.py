@@ -19,8 +19,6 @@ ROUNDS = 3
 LEANS = 1.0  # degrees to a side; from here on, a foot stands on its edge and its sole is not held
 MARGIN = 0.6  # degrees that are kept to a limit
 SWIVELS = 0.25  # seconds in which a leg turns about the line from hip to ankle, or a foot leans, and returns
-_AHEAD = np.array([0.0, 0.0, 1.0])
-_ASIDE = np.array([1.0, 0.0, 0.0])
 
 
 def eased_ankles(
@@ -44,7 +42,7 @@ def eased_ankles(
         if not leans:
             break
         poses = repinned(skeleton, poses, feet)
-    across = quat.rotate(feet.turns, _ASIDE)[..., 1]
+    across = quat.rotate(feet.turns, quat.LEFT)[..., 1]
     flat = np.abs(across) < np.sin(np.radians(LEANS))
     return poses, feet, Plants(plants.heel & flat, plants.ball & flat)
 
@@ -108,11 +106,11 @@ def _pitched(turns: Array, wanted: Array, ball: NDArray[np.bool_]) -> Array:
 
     ball : (n,) whether a foot stands on its ball; otherwise it stands on its heel
     """
-    ahead, towards = quat.rotate(turns, _AHEAD), quat.rotate(wanted, _AHEAD)
+    ahead, towards = quat.rotate(turns, quat.AHEAD), quat.rotate(wanted, quat.AHEAD)
     level = quat.from_axis_angle(quat.UP, np.arctan2(ahead[:, 0], ahead[:, 2]))
     pitch = np.arcsin(np.clip(-towards[:, 1], -1.0, 1.0))
     pitch = np.where(ball, np.maximum(pitch, 0.0), np.minimum(pitch, 0.0))
-    return quat.multiply(level, quat.from_axis_angle(_ASIDE, pitch))
+    return quat.multiply(level, quat.from_axis_angle(quat.LEFT, pitch))
 
 
 def _leaning(

@@ -41,7 +41,6 @@ CLEAR = 0.7  # cosine between both axes; above it, the bend alone gives the plan
 UNEVEN = 0.12  # metres; a floor with larger differences has steps, and is not changed
 _EXTENT = (("skullbase", "l_talocrural"), ("l_hip", "l_knee"), ("r_hip", "r_knee"))
 OFF = 12.0  # degrees between the segments of a capture and of the result, on average, that are a fault
-_UP = np.array([0.0, 1.0, 0.0])
 _LIMBS = (("shoulder", "elbow", "radiocarpal"), ("hip", "knee", "talocrural"))
 
 
@@ -99,7 +98,7 @@ def on_body(captured: CapturedMotion, joints: Mapping[str, int], body: Skeleton)
     feet = _feet(body, given, world)
     rotations = local_rotations(body, world)
     hips = [quat.rotate(world[:, 0], body.offsets[body.index(f"{s}_hip")]) for s in "lr"]
-    middle = (given.place("l_hip") + given.place("r_hip")) / 2 + feet.lift[:, None] * _UP
+    middle = (given.place("l_hip") + given.place("r_hip")) / 2 + feet.lift[:, None] * quat.UP
     root = middle - (hips[0] + hips[1]) / 2
     rotations, root = repinned(body, Poses(rotations, root), feet.feet)
     start = captured.times - captured.times[0]
@@ -204,7 +203,7 @@ def _level(pelvis: Array, given: _Upright) -> Array:
     """Turns (f, 4) of a pelvis wider than the captured one: it leans aside less, so that its hips rise no more."""
     if given.wider <= 0.0:
         return pelvis
-    line = quat.rotate(pelvis, np.array([1.0, 0.0, 0.0]))
+    line = quat.rotate(pelvis, quat.LEFT)
     level = line * [1.0, given.theirs / (given.theirs + 2 * given.wider), 1.0]
     return quat.multiply(quat.between(line, level), pelvis)
 
@@ -302,11 +301,11 @@ def _feet(body: Skeleton, given: _Upright, world: Array) -> _Feet:
         level, theirs = quat.IDENTITY, own
         if toes in given.rest:
             way = given.bone(ankle, toes)
-            level = quat.from_axis_angle(_UP, np.asarray(np.arctan2(way[0], way[2])))
+            level = quat.from_axis_angle(quat.UP, np.asarray(np.arctan2(way[0], way[2])))
             theirs = given.scale * np.array([0.0, way[1], np.hypot(way[0], way[2])])
         turn = quat.multiply(given.delta(ankle), level)
-        up = quat.rotate(quat.conjugate(turn[standing]), _UP).mean(axis=0)
-        level = quat.multiply(level, quat.between(_UP, up))
+        up = quat.rotate(quat.conjugate(turn[standing]), quat.UP).mean(axis=0)
+        level = quat.multiply(level, quat.between(quat.UP, up))
         turn = quat.multiply(given.delta(ankle), level)
         world[:, body.index(ankle)] = turn
         world[:, body.index(toes)] = quat.multiply(given.delta(toes), level) if toes in given.rest else turn
@@ -318,8 +317,8 @@ def _feet(body: Skeleton, given: _Upright, world: Array) -> _Feet:
     feet = AnkleTracks(np.stack(places, axis=1), np.stack(turns, axis=1))
     low = lowest(body, feet)
     lift = -_floor(low, np.stack(stands, axis=1))
-    lifted = feet.places + lift[:, None, None] * _UP
-    lifted += np.maximum(-(low + lift[:, None]), 0.0)[..., None] * _UP
+    lifted = feet.places + lift[:, None, None] * quat.UP
+    lifted += np.maximum(-(low + lift[:, None]), 0.0)[..., None] * quat.UP
     return _Feet(AnkleTracks(lifted, feet.turns), lift + float(np.mean(raised)))
 
 

@@ -31,8 +31,6 @@ FADE = 14.0  # frames within which a foot returns to the pace of its own path
 NEARLY = 0.999  # how far a foot is held in the frames before and after a hold
 ROLLED = 0.015  # metres that the end of a foot which stands on it alone may be away from its place in the flat stand
 CLEAR = 0.003  # metres over the floor of a foot that is not held
-_UP = np.array([0.0, 1.0, 0.0])
-_AHEAD = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,7 +170,7 @@ class Sole:
 
     def stand(self, places: Array, turns: Array, heel: Flags, ball: Flags) -> tuple[Array, Array]:
         """Return ankle (n, 3) and turn (n, 4) over one plant, with the held end exactly in its place."""
-        ahead = quat.rotate(turns, _AHEAD)
+        ahead = quat.rotate(turns, quat.AHEAD)
         heading = np.unwrap(np.arctan2(ahead[:, 0], ahead[:, 2]))
         pitch = np.arcsin(np.clip(-ahead[:, 1], -1.0, 1.0))  # above 0 the heel is up
         flat = heel & ball
@@ -180,7 +178,7 @@ class Sole:
         if np.ptp(most) <= SURELY * PIVOT:
             heading = np.full(len(heading), float(np.median(most)))
         pitch = np.where(flat, 0.0, np.where(ball, np.clip(pitch, 0.0, STEEPEST), np.minimum(pitch, 0.0)))
-        level = quat.from_axis_angle(_UP, heading)
+        level = quat.from_axis_angle(quat.UP, heading)
         anchor = np.where(ball[:, None], self.ball, self.heel)
         point = places + quat.rotate(turns, anchor)
         out, turn = np.empty_like(places), np.empty_like(turns)
@@ -196,7 +194,7 @@ class Sole:
                 pitch[part] = np.where(flat[part], 0.0, self._raised(places[part] - own, heading[part]))
             eased = _eased(pitch[part], flat[part])
             eased = np.maximum(eased, 0.0) if ball[first] else np.minimum(eased, 0.0)
-            turn[part] = quat.multiply(level[part], quat.from_axis_angle(np.array([1.0, 0.0, 0.0]), eased))
+            turn[part] = quat.multiply(level[part], quat.from_axis_angle(quat.LEFT, eased))
             out[part] = own - quat.rotate(turn[part], anchor[part])
             at = own - quat.rotate(level[end - 1], anchor[end - 1])
         return out, turn
@@ -242,8 +240,8 @@ def flatten_toes(skeleton: Skeleton, rotations: Array, feet: AnkleTracks, plants
     places = feet.places.copy()
     for side, points in enumerate(sole_points(skeleton)):
         toes = skeleton.index(f"{'lr'[side]}_metatarsal")
-        ahead = quat.rotate(feet.turns[:, side], _AHEAD)
-        level = quat.from_axis_angle(_UP, np.arctan2(ahead[:, 0], ahead[:, 2]))
+        ahead = quat.rotate(feet.turns[:, side], quat.AHEAD)
+        level = quat.from_axis_angle(quat.UP, np.arctan2(ahead[:, 0], ahead[:, 2]))
         flat = quat.multiply(quat.conjugate(feet.turns[:, side]), level)
         away = _frames_to(plants.ball[:, side])
         heels = (plants.heel & ~plants.ball)[:, side]
@@ -256,7 +254,7 @@ def flatten_toes(skeleton: Skeleton, rotations: Array, feet: AnkleTracks, plants
             tips = np.stack([(ball + quat.rotate(world, p.offset))[:, 1] for p in points[4:]]).min(axis=0)
             reach = float(points[4].offset[2])
             up = np.where(tips < least - 1e-5, np.arcsin(np.clip((least - tips) / reach, 0.0, 0.5)), 0.0)
-            turns = quat.multiply(turns, quat.from_axis_angle(np.array([-1.0, 0.0, 0.0]), up))
+            turns = quat.multiply(turns, quat.from_axis_angle(-quat.LEFT, up))
         name = skeleton.names[toes]
         rotations[:, toes] = within(skeleton, name, turns, 0.5)
         world = quat.multiply(feet.turns[:, side], rotations[:, toes])

@@ -87,7 +87,7 @@ def _places(skeleton: Skeleton, bone: Bone, style: Style) -> list[tuple[str, Arr
     bare = bone.name[2:] if sided else bone.name
     name = f"{bone.name[:2]}{_ENDS[bare]}" if sided else _ENDS[bare]
     middle = style.placement == "center" or (style.placement == "hybrid" and bone.part != "feet")
-    across = np.array([1.0, 0.0, 0.0]) if abs(bone.along[0]) < 0.5 else np.array([0.0, 0.0, 1.0])
+    across = quat.LEFT if abs(bone.along[0]) < 0.5 else quat.AHEAD
     across = across - bone.along * (across @ bone.along)
     aside = _ASIDE.get(bone.part, _ASIDE_OF_LIMBS) * across / np.linalg.norm(across)
     return [(name, bone.end * (0.5 if middle else 1.0), aside)]
@@ -108,7 +108,6 @@ def place_points(
 
 NOMINAL = 1000.0  # kg/m^3 at which springs are measured
 LIMIT = 0.009  # seconds in which a joint returns from beyond its limit
-FRONT = np.array([0.0, 0.0, 1.0])
 _CHAINS = (  # in the engine's order: each body, then all below it
     ("HumanoidRoot", "vl5", "vt10", "vt4", "vc4", "skullbase"),
     *(("vt4", *(f"{s}_{n}" for n in ("sternoclavicular", "shoulder", "elbow", "radiocarpal"))) for s in "lr"),
@@ -205,7 +204,7 @@ def hinge_axis(bare: str, end: Array) -> Array:
 
     bare : "knee" or "elbow"
     """
-    return _square(end, -FRONT if bare == "knee" else FRONT)
+    return _square(end, -quat.AHEAD if bare == "knee" else quat.AHEAD)
 
 
 def _square(bone: Array, towards: Array) -> Array:

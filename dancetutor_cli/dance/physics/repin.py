@@ -15,7 +15,7 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.limbs import arm_in_torso
 from dancetutor_cli.dance.rig.skeleton import LIMITS, Skeleton, beyond, within
-from dancetutor_cli.dance.smoothing import both_envelopes, smooth, upper_envelope
+from dancetutor_cli.dance.smoothing import both_envelopes, smooth, soft_excess, upper_envelope
 from dancetutor_cli.dance.units import Array, Poses
 
 # Feet back in their places: physics alone lets them slide by half a centimetre, so legs are closed by IK afterwards.
@@ -107,7 +107,7 @@ def _pull(skeleton: Skeleton, pelvis: Array, root: Array, legs: list[Leg], goals
             way = goal - hip - by
             far = np.linalg.norm(way, axis=1)
             past = far - leg.longest
-            short = SOFT * np.logaddexp(0.0, past / SOFT) if first else np.maximum(past, 0.0)
+            short = soft_excess(past, SOFT) if first else np.maximum(past, 0.0)
             by += way / np.maximum(far, 1e-9)[:, None] * short[:, None]
             missing = max(missing, float(short.max()))
         if missing < 1e-6:

@@ -32,9 +32,6 @@ STEP = 1.2  # m/s of that quick step
 FROM = np.radians(15.0)  # bend of a knee that is nearly straight
 SINKS = 0.04  # metres that a pelvis may sink for a heel that stays on the floor
 FADE = 0.10  # seconds in which a foot returns to its own path
-_UP = np.array([0.0, 1.0, 0.0])
-_ASIDE = np.array([1.0, 0.0, 0.0])
-_AHEAD = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,13 +164,13 @@ class _Foot:
 
 def _heading_and_pitch(turns: Array) -> tuple[Array, Array]:
     """Return the heading of feet, radians (n,) from +Z to +X, and their pitch, radians (n,) with the heel up."""
-    ahead = quat.rotate(turns, _AHEAD)
+    ahead = quat.rotate(turns, quat.AHEAD)
     return np.unwrap(np.arctan2(ahead[:, 0], ahead[:, 2])), np.arcsin(np.clip(-ahead[:, 1], -1.0, 1.0))
 
 
 def _level_turns(heading: Array, pitch: Array) -> Array:
     """Return turns (n, 4) of feet that are level across."""
-    return quat.multiply(quat.from_axis_angle(_UP, heading), quat.from_axis_angle(_ASIDE, pitch))
+    return quat.multiply(quat.from_axis_angle(quat.UP, heading), quat.from_axis_angle(quat.LEFT, pitch))
 
 
 def _unshuffled(times: Array, path: Array) -> list[tuple[int, int]]:

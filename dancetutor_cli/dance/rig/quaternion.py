@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike
 from dancetutor_cli.dance.units import Array
 
 IDENTITY: Array = np.array([1.0, 0.0, 0.0, 0.0])
-UP = np.array([0.0, 1.0, 0.0])
+# the axes of the world, and of the dancer in her rest pose
+LEFT, UP, AHEAD = np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0])
 _NOTHING = 1e-150  # a length whose square loses digits
 
 
@@ -81,7 +82,7 @@ def between(a: ArrayLike, b: ArrayLike) -> Array:
     a, b = np.broadcast_arrays(a, b)
     w = 1.0 + np.sum(a * b, axis=-1, keepdims=True)
     opposite = w < 1e-9
-    aside = np.where(np.abs(a[..., :1]) < 0.9, np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))
+    aside = np.where(np.abs(a[..., :1]) < 0.9, LEFT, UP)
     axis = np.where(opposite, np.cross(a, aside), np.cross(a, b))
     return normalize(_join(np.where(opposite, 0.0, w), axis))
 

@@ -8,7 +8,15 @@ from dancetutor_cli.dance.motion import Bar, Grip
 from dancetutor_cli.dance.plan import Plan, Press, Turn
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_arms import AcrossSettings, BarSettings, HandSettings
-from dancetutor_cli.dance.smoothing import Controller, follow, no_faster, smooth, smooth_path, upper_envelope
+from dancetutor_cli.dance.smoothing import (
+    Controller,
+    follow,
+    no_faster,
+    smooth,
+    smooth_path,
+    soft_excess,
+    upper_envelope,
+)
 from dancetutor_cli.dance.trajectory.legs import Course
 from dancetutor_cli.dance.units import Array
 
@@ -225,7 +233,7 @@ def limit_to_bar(path: Array, share: Array, bar: Bar, settings: BarSettings, nea
     nearer : (n,) metres that it must be nearer than usual
     """
     most = settings.forward - nearer
-    over = (path[:, 1] - bar.behind - most) / settings.soft
+    over = path[:, 1] - bar.behind - most
     # a soft minimum of the place and the farthest one: -log(exp(-a) + exp(-b))
-    near = bar.behind + most - settings.soft * np.logaddexp(0.0, -over)
+    near = bar.behind + most - soft_excess(-over, settings.soft)
     return np.column_stack((path[:, 0], path[:, 1] + share * (near - path[:, 1])))

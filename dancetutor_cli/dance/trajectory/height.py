@@ -158,10 +158,7 @@ def jump_lean(plan: Plan, times: Array, jump: JumpSettings) -> Array:
 
 NODE_RATE = 80.0  # nodes per second
 UNIT = 0.02  # metres, the typical difference of heights; it scales the programme
-GIVE_FORCE, GIVE_ROOM = (
-    1e-5,
-    1e-4,
-)  # costs of pushing harder than legs do and of stretching them, see `quadratic.Limits`
+GIVE_FORCE, GIVE_ROOM = 1e-5, 1e-4  # costs of more force than legs have, and of stretched legs: `quadratic.Limits`
 LOOSE = 1e-3  # weight of the target height in flight
 LEAST_STAND = 0.012  # seconds; a flight that begins so soon after another one is left out
 
@@ -267,9 +264,8 @@ def _separate_flights(flights: Array) -> Array:
 def _nodes(start: float, end: float, flights: Array) -> tuple[Array, Flags]:
     """Return node times, and for each interval between nodes whether it is flight."""
     times, flying = [np.array([start])], []
-    edges = [(a, b, fly) for pair in zip([start, *flights[:, 1]], [*flights[:, 0], end], strict=True) for a, b, fly in
-             [(pair[0], pair[1], False)]]  # fmt: skip
-    phases = sorted([*edges, *((a, b, True) for a, b in flights)])
+    stands = zip([start, *flights[:, 1]], [*flights[:, 0], end], strict=True)
+    phases = sorted([*((a, b, False) for a, b in stands), *((a, b, True) for a, b in flights)])
     for a, b, fly in phases:
         count = max(3, int(np.ceil((b - a) * NODE_RATE)))
         times.append(a + (b - a) * np.arange(1, count + 1) / count)
