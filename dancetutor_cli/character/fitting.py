@@ -83,12 +83,10 @@ def _rooted(character: Character, names: dict[int, str]) -> Character:
     place = np.argsort(order)
     rest = skeleton.rest[order]
     new = np.array([-1 if parents[j] < 0 else place[parents[j]] for j in order], dtype=np.int32)
-    offsets = rest.copy()
-    offsets[1:] -= rest[new[1:]]
     meshes = tuple(replace(m, joints=place[m.joints].astype(np.uint16)) for m in character.meshes)
     return replace(
         character,
-        skeleton=Skeleton(tuple(labels[j] for j in order), new, offsets),
+        skeleton=Skeleton.from_rest(tuple(labels[j] for j in order), new, rest),
         meshes=meshes,
         inverse_bind=character.inverse_bind[order],
     )
@@ -148,14 +146,12 @@ def _ground(character: Character, vertices: Array) -> float:
 
 def _with_rest(character: Character, rest: Array, moves: Array) -> Character:
     """New rest positions (j, 3); moves (j, 4, 4) takes what each joint carries from the old rest place to the new."""
-    parents = character.skeleton.parents
-    offsets = rest.copy()
-    offsets[1:] -= rest[parents[1:]]
     old = character.inverse_bind.copy()
     old[:, :3, 3] += character.skeleton.rest  # from the mesh to the old rest place
     inverse_bind = moves @ old
     inverse_bind[:, :3, 3] -= rest
-    return replace(character, skeleton=Skeleton(character.skeleton.names, parents, offsets), inverse_bind=inverse_bind)
+    skeleton = Skeleton.from_rest(character.skeleton.names, character.skeleton.parents, rest)
+    return replace(character, skeleton=skeleton, inverse_bind=inverse_bind)
 
 
 def _in_rest_pose(character: Character) -> Character:
@@ -230,6 +226,4 @@ def body_of(skeleton: Skeleton) -> Skeleton:
             if name.endswith("_metatarsal"):
                 out[name][1] = min(0.33 * out[above][1], out[name][1])
     new = np.array([out[name] for name in ours.names])
-    offsets = new.copy()
-    offsets[1:] -= new[ours.parents[1:]]
-    return Skeleton(ours.names, ours.parents, offsets)
+    return Skeleton.from_rest(ours.names, ours.parents, new)

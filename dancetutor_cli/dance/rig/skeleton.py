@@ -27,6 +27,13 @@ class Skeleton:
     parents: NDArray[np.int32]
     offsets: NDArray[np.float64]
 
+    @classmethod
+    def from_rest(cls, names: tuple[str, ...], parents: NDArray[np.int32], rest: Array) -> Skeleton:
+        """Return the skeleton with the joints at these places (j, 3) of the world in the rest pose."""
+        offsets = rest.copy()
+        offsets[1:] -= rest[parents[1:]]
+        return cls(names, parents, offsets)
+
     def index(self, name: str) -> int:
         """Return the index of a joint. Raises ValueError if no joint has this name."""
         return self.names.index(name)
@@ -96,9 +103,7 @@ def dancer_skeleton() -> Skeleton:
         world[name.replace("l_", "r_", 1)] = (mirrored, (-x, y, z))
     parents = np.array([-1 if (p := world[n][0]) is None else ORDER.index(p) for n in ORDER], dtype=np.int32)
     rest = np.array([world[n][1] for n in ORDER])
-    offsets = rest.copy()
-    offsets[1:] -= rest[parents[1:]]
-    return Skeleton(ORDER, parents, offsets)
+    return Skeleton.from_rest(ORDER, parents, rest)
 
 
 # The limits of each joint of a person: hinges, and ball joints split into swing and twist about their bone.
