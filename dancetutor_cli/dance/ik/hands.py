@@ -7,13 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from dancetutor_cli.dance.context import Context, around, grip_share
-from dancetutor_cli.dance.ik.knees import Legs, middle_joint, square_to
+from dancetutor_cli.dance.ik.knees import Legs
 from dancetutor_cli.dance.motion import Bar, Grip
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import SIDES, hand_direction, palm_normal, palm_points
 from dancetutor_cli.dance.rig.limbs import KNEE, THIGH
 from dancetutor_cli.dance.rig.quaternion import UP
 from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.rig.two_bones import ARM, bone_lengths, middle_joint, square_to
 from dancetutor_cli.dance.settings_arms import ArmSettings, BarSettings
 from dancetutor_cli.dance.smoothing import smooth, soft_excess
 from dancetutor_cli.dance.units import Array, Flags
@@ -261,9 +262,8 @@ def leg_clearance(wrists: Array, shoulders: Array, elbows: Array, legs: Legs, sk
 
 def _hand_ends(wrists: Array, shoulders: Array, elbows: Array, skeleton: Skeleton) -> Array:
     """Return the ends (f, 2, 3) of hands that continue their forearms; elbows : (f, 2, 3) directions."""
-    upper, lower = (float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("elbow", "radiocarpal"))
     reach = wrists - shoulders
-    forearm = reach - middle_joint(reach, square_to(reach, elbows), (upper, lower))
+    forearm = reach - middle_joint(reach, square_to(reach, elbows), bone_lengths(skeleton, "l", ARM))
     return np.asarray(wrists + HAND * forearm / np.linalg.norm(forearm, axis=2, keepdims=True))
 
 
@@ -288,8 +288,7 @@ def bent_arms(swing: Array, bent: Array, upper: Array | float, out: Array, conte
     swing : (n, 2) metres ahead; bent, upper : the elbow's flexion, and the upper arm's angle ahead of hanging down, of
     an arm that does not swing, radians; out : (n, 2) metres to the left
     """
-    arms, skeleton = context.settings.arms, context.skeleton
-    u, f = (float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("elbow", "radiocarpal"))
+    arms, (u, f) = context.settings.arms, bone_lengths(context.skeleton, "l", ARM)
     least, most = np.radians((arms.bent_least, arms.bent_most))
     flexed = _within(bent + np.radians(arms.swing_bent) * swing, least, most)
     raised = upper + np.radians(arms.swing_upper) * swing

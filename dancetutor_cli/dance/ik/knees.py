@@ -11,6 +11,7 @@ from dancetutor_cli.dance.foot_path import Feet
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.limbs import depth, leg_capsules
 from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.rig.two_bones import LEG, bone_lengths, middle_joint, square_to
 from dancetutor_cli.dance.settings_body import KneeSettings
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array
@@ -34,8 +35,7 @@ class Hung:
         """Return the legs, with knees that point along poles (f, 2, 3)."""
         hips = np.stack([skeleton.offsets[skeleton.index(f"{s}_hip")] for s in "lr"])
         hips = self.pelvis[:, None] + quat.rotate(self.rotation[:, None], hips)
-        bones = [float(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")])) for n in ("knee", "talocrural")]
-        return Legs(hips, self.ankles, poles, (bones[0], bones[1]))
+        return Legs(hips, self.ankles, poles, bone_lengths(skeleton, "l", LEG))
 
 
 def knee_poles(yaw: Array, feet: Feet, legs: Array, hips: float, knees: KneeSettings) -> Array:
@@ -112,25 +112,6 @@ class Legs:
         knees = self.knees(given)
         legs = [leg_capsules(self.hips[:, s], knees[:, s], self.ankles[:, s]) for s in (0, 1)]
         return depth(legs[0], legs[1], STEPS)
-
-
-def middle_joint(reach: Array, poles: Array, bones: tuple[float, float]) -> Array:
-    """Return the place (..., 3) of the joint between two bones of these lengths, from the root of the first bone.
-
-    reach : (..., 3) from that root to the end of the second bone; poles : (..., 3) unit vectors square to it
-    """
-    first, second = bones
-    far = np.linalg.norm(reach, axis=-1, keepdims=True)
-    long = np.clip(far, 0.1, first + second - 1e-4)
-    along = (first**2 - second**2 + long**2) / (2.0 * long)
-    return np.asarray(along / far * reach + np.sqrt(np.maximum(first**2 - along**2, 0.0)) * poles)
-
-
-def square_to(reach: Array, poles: Array) -> Array:
-    """Return the unit vectors (..., 3) square to `reach` that are nearest to poles (..., 3)."""
-    line = reach / np.linalg.norm(reach, axis=-1, keepdims=True)
-    ahead = poles - np.sum(poles * line, axis=-1, keepdims=True) * line
-    return np.asarray(ahead / np.linalg.norm(ahead, axis=-1, keepdims=True))
 
 
 def _swivelled(reach: Array, poles: Array, given: Array) -> Array:

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics.plants import lowest
-from dancetutor_cli.dance.physics.ragdoll import hinge_axis
 from dancetutor_cli.dance.physics.repin import AnkleTracks, repinned
 from dancetutor_cli.dance.physics.standing import (
     TRUNK,
@@ -30,6 +29,7 @@ from dancetutor_cli.dance.physics.standing import (
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import local_rotations, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.rig.two_bones import ARM, LEG, Chain, hinge_axis
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.feet.play import runs
@@ -41,7 +41,7 @@ CLEAR = 0.7  # cosine between both axes; above it, the bend alone gives the plan
 UNEVEN = 0.12  # metres; a floor with larger differences has steps, and is not changed
 _EXTENT = (("skullbase", "l_talocrural"), ("l_hip", "l_knee"), ("r_hip", "r_knee"))
 OFF = 12.0  # degrees between the segments of a capture and of the result, on average, that are a fault
-_LIMBS = (("shoulder", "elbow", "radiocarpal"), ("hip", "knee", "talocrural"))
+_LIMBS = (ARM, LEG)
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,7 +221,7 @@ def _spread(body: Skeleton, joints: Mapping[str, int], world: Array) -> None:
             world[:, body.index(f"{side}_sternoclavicular")] = world[:, body.index("vt4")]
 
 
-def _limb(body: Skeleton, given: _Upright, side: str, chain: tuple[str, str, str], world: Array) -> None:
+def _limb(body: Skeleton, given: _Upright, side: str, chain: Chain, world: Array) -> None:
     """Write turns of an arm or leg into `world`: bones in the directions of the captured ones, the middle joint a
     hinge.
     """

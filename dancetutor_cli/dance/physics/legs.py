@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from dancetutor_cli.dance.physics.plants import Plants
-from dancetutor_cli.dance.physics.repin import AnkleTracks, Leg, repinned
+from dancetutor_cli.dance.physics.repin import AnkleTracks, repinned
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import mass_of
 from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond
+from dancetutor_cli.dance.rig.two_bones import TwoBones
 from dancetutor_cli.dance.smoothing import cubic, low_pass, upper_envelope
 from dancetutor_cli.dance.units import Array, Poses
 
@@ -32,8 +33,8 @@ def soft_legs(
     stand
     """
     pelvis, root = poses.rotations[:, 0], poses.root.copy()
-    legs = [Leg(skeleton, s) for s in "lr"]
-    hips = [quat.rotate(pelvis, skeleton.offsets[leg.hip]) for leg in legs]
+    legs = [TwoBones(skeleton, s) for s in "lr"]
+    hips = [quat.rotate(pelvis, skeleton.offsets[leg.root]) for leg in legs]
     sink, reach = np.zeros(len(root)), []
     for side, (leg, hip) in enumerate(zip(legs, hips, strict=True)):
         way = feet.places[:, side] - root - hip
@@ -84,26 +85,26 @@ def too_high(skeleton: Skeleton, pelvis: tuple[Array, Array], feet: AnkleTracks,
     turns, root = pelvis
     need = np.zeros(len(root))
     for k, side in enumerate("lr"):
-        leg = Leg(skeleton, side)
-        way = feet.places[:, k] - root - quat.rotate(turns, skeleton.offsets[leg.hip])
+        leg = TwoBones(skeleton, side)
+        way = feet.places[:, k] - root - quat.rotate(turns, skeleton.offsets[leg.root])
         aside = way[:, 0] ** 2 + way[:, 2] ** 2
-        need = np.maximum(need, -way[:, 1] - np.sqrt(np.maximum(leg.length(bent) ** 2 - aside, 0.0)))
+        need = np.maximum(need, -way[:, 1] - np.sqrt(np.maximum(leg.distance(bent) ** 2 - aside, 0.0)))
     return need
 
 
-def _soft(leg: Leg, distance: Array, times: Array) -> Array:
+def _soft(leg: TwoBones, distance: Array, times: Array) -> Array:
     """Return the new distance (f,) of hip and ankle, now `distance` (f,) metres apart.
 
     It is always less than the length of a straight leg. The last part of a stretch comes and goes slowly, so there is
     no pop.
     """
-    start, end = leg.length(FROM), leg.length(TO)
+    start, end = leg.distance(FROM), leg.distance(TO)
     over = np.maximum(distance - start, 0.0)
     near = start + (end - start) * (1 - np.exp(-over / (end - start)))
-    stretch = np.where(distance > start, FROM - leg.bent(near), 0.0)
+    stretch = np.where(distance > start, FROM - leg.bend(near), 0.0)
     most = FROM - TO
     slow = most - upper_envelope(times, most - stretch, SLOWLY)
-    return np.asarray(np.where(distance > start, leg.lengths(FROM - np.maximum(slow, 0.0)), distance))
+    return np.asarray(np.where(distance > start, leg.distances(FROM - np.maximum(slow, 0.0)), distance))
 
 
 # The centre of mass keeps its path: a style moves limbs, and the body compensates their movement.

@@ -11,6 +11,7 @@ import numpy as np
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.rig.two_bones import hinge_axis
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.errors import UsageError, choice
 
@@ -197,19 +198,6 @@ def _tip(skeleton: Skeleton, name: str, bare: str) -> Array:
 
 def _hinge(bare: str, end: Array) -> Array | None:
     return hinge_axis(bare, end) if bare in _HINGED else None
-
-
-def hinge_axis(bare: str, end: Array) -> Array:
-    """The unit vector about which a positive turn bends a shank backward or a forearm forward; end : (3,), rest pose.
-
-    bare : "knee" or "elbow"
-    """
-    return _square(end, -quat.AHEAD if bare == "knee" else quat.AHEAD)
-
-
-def _square(bone: Array, towards: Array) -> Array:
-    axis = np.cross(bone, towards)
-    return np.asarray(axis / np.linalg.norm(axis))
 
 
 def _mass(bare: str, radius: float, end: Array) -> float:

@@ -6,15 +6,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import hold_share
 from dancetutor_cli.dance.motion import Motion
-from dancetutor_cli.dance.physics.ragdoll import Bone, bend_and_twist, bones_of, hinge_axis
+from dancetutor_cli.dance.physics.ragdoll import Bone, bend_and_twist, bones_of
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.limbs import arm_in_torso
 from dancetutor_cli.dance.rig.skeleton import LIMITS, Skeleton, beyond, within
+from dancetutor_cli.dance.rig.two_bones import ARM, TwoBones
 from dancetutor_cli.dance.smoothing import both_envelopes, smooth, soft_excess, upper_envelope
 from dancetutor_cli.dance.units import Array, Poses
 
@@ -23,7 +23,6 @@ from dancetutor_cli.dance.units import Array, Poses
 # Ankles get exactly the place, and feet exactly the turn, of the input. Thighs keep the plane in which the ragdoll bent
 # them. If a leg is too short, the pelvis gives way.
 
-STRAIGHTEST = np.radians(6.0)  # least bend of a knee
 REACH_ROUNDS = 40  # rounds of pulling the pelvis until both legs reach
 SOFT = 0.003  # metres over which a leg approaches its stretch; if knees snap straight, feet sink between two keys
 
@@ -46,61 +45,26 @@ def feet_of(skeleton: Skeleton, rotations: Array, root: Array) -> AnkleTracks:
 def repinned(skeleton: Skeleton, poses: Poses, feet: AnkleTracks) -> Poses:
     """Return the poses, local rotations (f, j, 4) and root (f, 3), with legs that end in `feet`."""
     rotations, root = poses.rotations.copy(), poses.root.copy()
-    ankles = [skeleton.index(f"{s}_talocrural") for s in "lr"]
-    legs = [Leg(skeleton, s) for s in "lr"]
+    legs = [TwoBones(skeleton, s) for s in "lr"]
     goals = [feet.places[:, k] for k in (0, 1)]
     root += _pull(skeleton, rotations[:, 0], root, legs, goals)
     places, turned = world_transforms(skeleton, rotations, root)
-    for k, (leg, ankle, goal) in enumerate(zip(legs, ankles, goals, strict=True)):
-        reach = goal - places[:, leg.hip]
-        bend = leg.bend(np.linalg.norm(reach, axis=1))
-        knee = quat.from_axis_angle(leg.axis, bend)
-        ends = quat.rotate(turned[:, leg.hip], leg.upper + quat.rotate(knee, leg.lower))
-        thigh = quat.multiply(quat.between(ends, reach), turned[:, leg.hip])
-        parent = turned[:, skeleton.parents[leg.hip]]
-        rotations[:, leg.hip] = quat.multiply(quat.conjugate(parent), thigh)
-        rotations[:, leg.knee] = knee
+    for k, (leg, goal) in enumerate(zip(legs, goals, strict=True)):
+        reach = goal - places[:, leg.root]
+        knee = quat.from_axis_angle(leg.axis, leg.turn(np.linalg.norm(reach, axis=1)))
+        thigh = leg.aim(turned[:, leg.root], knee, reach)
+        parent = turned[:, skeleton.parents[leg.root]]
+        rotations[:, leg.root] = quat.multiply(quat.conjugate(parent), thigh)
+        rotations[:, leg.middle] = knee
         shank = quat.multiply(thigh, knee)
-        rotations[:, ankle] = quat.multiply(quat.conjugate(shank), feet.turns[:, k])
+        rotations[:, leg.end] = quat.multiply(quat.conjugate(shank), feet.turns[:, k])
     return Poses(rotations, root)
 
 
-class Leg:
-    """A leg: two bones with a hinge between them, from the rest pose."""
-
-    def __init__(self, skeleton: Skeleton, side: str) -> None:
-        self.hip, self.knee = skeleton.index(f"{side}_hip"), skeleton.index(f"{side}_knee")
-        self.upper = skeleton.offsets[self.knee]
-        self.lower = skeleton.offsets[skeleton.index(f"{side}_talocrural")]
-        self.axis = hinge_axis("knee", self.lower)
-        self.a, self.b = float(np.linalg.norm(self.upper)), float(np.linalg.norm(self.lower))
-        along = self.upper / self.a
-        self.rest = float(np.arctan2(self.lower @ np.cross(self.axis, along), self.lower @ along))
-        self.longest = self.length(STRAIGHTEST)
-
-    def length(self, bend: float) -> float:
-        """Return the metres from hip to ankle with a knee bent by `bend` radians."""
-        return float(self.lengths(np.array(bend)))
-
-    def lengths(self, bend: Array) -> Array:
-        """Return the same as `length`, for many bends."""
-        return np.asarray(np.sqrt(self.a**2 + self.b**2 + 2 * self.a * self.b * np.cos(bend)))
-
-    def bent(self, distance: Array) -> Array:
-        """Return the bend of the knee in radians, 0 straight, with the ankle `distance` metres from the hip."""
-        d = np.clip(distance, abs(self.a - self.b) + 1e-4, self.longest)
-        cosine = (d**2 - self.a**2 - self.b**2) / (2 * self.a * self.b)
-        return np.asarray(np.arccos(np.clip(cosine, -1.0, 1.0)))
-
-    def bend(self, distance: Array) -> Array:
-        """Return the turn (f,) of the knee in radians that puts the ankle `distance` (f,) metres from the hip."""
-        return self.bent(distance) - self.rest
-
-
-def _pull(skeleton: Skeleton, pelvis: Array, root: Array, legs: list[Leg], goals: list[Array]) -> Array:
+def _pull(skeleton: Skeleton, pelvis: Array, root: Array, legs: list[TwoBones], goals: list[Array]) -> Array:
     """Return the metres (f, 3) by which the root must move so that both ankles are within reach of their legs."""
     by = np.zeros_like(root)
-    hips = [root + quat.rotate(pelvis, skeleton.offsets[leg.hip]) for leg in legs]
+    hips = [root + quat.rotate(pelvis, skeleton.offsets[leg.root]) for leg in legs]
     for first in (True, *[False] * REACH_ROUNDS):
         missing = 0.0
         for leg, hip, goal in zip(legs, hips, goals, strict=True):
@@ -174,7 +138,6 @@ def _forward(bone: Bone, turns: Array) -> Array:
 # If an arm is too short, trunk and pelvis give way towards the input, whose hands are on the bar.
 
 REACH = 0.35  # seconds in which a hand goes to its place in the input, and leaves it again
-LONGEST = 0.995  # largest stretch of an arm, as a part of its length
 HOLD_ROUNDS, HOLD_STEP = 12, 0.25  # rounds of giving way, and the part of the way in each
 HOLD_SPAN = 0.5  # seconds over which the body gives way, and returns
 DEEP = 0.003  # metres that a forearm may be inside the trunk
@@ -211,23 +174,22 @@ def _closed(skeleton: Skeleton, poses: Poses, given: tuple[Array, Array], share:
     short = np.zeros(len(rotations))
     bones = {bone.name: bone for bone in bones_of(skeleton)}
     for k, side in enumerate("lr"):
-        shoulder, elbow, wrist = (skeleton.index(f"{side}_{n}") for n in ("shoulder", "elbow", "radiocarpal"))
+        limb = TwoBones(skeleton, side, ARM)
+        shoulder, elbow, wrist = limb.root, limb.middle, limb.end
         held = share[:, k] > 0.0
         if not held.any():
             continue
-        upper, lower = skeleton.offsets[elbow], skeleton.offsets[wrist]
         part = share[:, k, None]
         goal = places[:, wrist] + part * (given[0][:, wrist] - places[:, wrist])
         hand = quat.slerp(turned[:, wrist], given[1][:, wrist], share[:, k])
         reach = goal - places[:, shoulder]
-        bend, far = _bend(upper, lower, np.linalg.norm(reach, axis=1))
+        distance = np.linalg.norm(reach, axis=1)
         _, twist = bend_and_twist(bones[f"{side}_elbow"], rotations[:, elbow]).T
         forearm = quat.multiply(
-            quat.from_axis_angle(hinge_axis("elbow", lower), bend),
+            quat.from_axis_angle(limb.axis, limb.turn(distance)),
             quat.from_axis_angle(bones[f"{side}_elbow"].along, twist * (1.0 - smooth(share[:, k]))),
         )
-        ends = quat.rotate(turned[:, shoulder], upper + quat.rotate(forearm, lower))
-        arm = quat.multiply(quat.between(ends, reach), turned[:, shoulder])
+        arm = limb.aim(turned[:, shoulder], forearm, reach)
         made = (
             (shoulder, quat.multiply(quat.conjugate(turned[:, skeleton.parents[shoulder]]), arm)),
             (elbow, forearm),
@@ -236,20 +198,8 @@ def _closed(skeleton: Skeleton, poses: Poses, given: tuple[Array, Array], share:
         for joint, turns in made:
             rotations[held, joint] = turns[held]
             short[held & (beyond(skeleton, skeleton.names[joint], turns) > 0.5)] = 1.0
-        short[held & far] = 1.0
+        short[held & (distance > limb.longest)] = 1.0
     joints, _ = world_transforms(skeleton, rotations, poses.root)
     for k, side in enumerate("lr"):
         short[(share[:, k] > 0.0) & (arm_in_torso(skeleton, joints, side) > DEEP)] = 1.0
     return rotations, short
-
-
-def _bend(upper: Array, lower: Array, distance: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Return the turn (f,) of an elbow, radians, for a wrist `distance` (f,) from the shoulder; whether (f,) that is
-    too far.
-    """
-    a, b = float(np.linalg.norm(upper)), float(np.linalg.norm(lower))
-    axis, along = hinge_axis("elbow", lower), upper / a
-    rest = float(np.arctan2(lower @ np.cross(axis, along), lower @ along))
-    d = np.clip(distance, abs(a - b) + 1e-4, LONGEST * (a + b))
-    bend = np.arccos(np.clip((d**2 - a**2 - b**2) / (2 * a * b), -1.0, 1.0))
-    return bend - rest, distance > LONGEST * (a + b)

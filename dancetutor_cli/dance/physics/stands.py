@@ -13,10 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from dancetutor_cli.dance.physics.plants import NEARLY, STEEPEST, Plants, Sole, cleared
-from dancetutor_cli.dance.physics.repin import AnkleTracks, Leg
+from dancetutor_cli.dance.physics.repin import AnkleTracks
 from dancetutor_cli.dance.quality.contact import SHORTEST, stand_frames
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.rig.two_bones import TwoBones
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array, Flags
 from dancetutor_cli.feet.play import runs
@@ -88,7 +89,7 @@ class _Foot:
 
     def __init__(self, skeleton: Skeleton, side: int, times: Array, hips: Array, free: Array) -> None:
         self.sole, self.times, self.hips, self.free = Sole(skeleton, side), times, hips, free
-        self.reach = Leg(skeleton, "lr"[side]).length(FROM) + SINKS
+        self.reach = TwoBones(skeleton, "lr"[side]).distance(FROM) + SINKS
 
     def stands(self, place: Array, turn: Array) -> list[_Stand]:
         """Stands in time: the stands of ankle (f, 3) and ball, joined where they overlap, with shuffles split."""
