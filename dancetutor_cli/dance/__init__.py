@@ -27,8 +27,8 @@ last.
     clearance, gait               a foot's path in the air, for `foot_path`; how the body moves with the steps of a walk
     waits, face                   the dancer's movements while she waits; lids, smiles and eyes
     request, two, performance     the user's options; two dancers on one pad; the dancers of a chart and their dance
-    pieces, bake, kept, ends      the pieces of a song; the order of work for a piece; the store of baked pieces; the
-                                  beginning and the end of a cut
+    pieces, bake, keys            the pieces of a song; the order of work for a piece; the times of its keys
+    kept, ends                    the store of baked pieces; the beginning and the end of a cut
     smoothing                     paths over time
     quadratic, nonnegative        banded least squares with limits; least squares with non-negative unknowns
 

@@ -16,27 +16,23 @@ from dancetutor_cli.dance.footwork.planner import plan_footwork
 from dancetutor_cli.dance.ik.ankles import ease_ankles, rolled_soles
 from dancetutor_cli.dance.ik.full_body import solve
 from dancetutor_cli.dance.ik.targets import free_hands, translated
+from dancetutor_cli.dance.keys import Keys, doubtful, key_times, refined
 from dancetutor_cli.dance.layers import Activity, add_fingers, add_layers, curls, glances_at, hand_use, look
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics.hair import add_hair
 from dancetutor_cli.dance.pieces import (
     BakedPiece,
-    Keys,
     Piece,
     PieceRunner,
     RagdollStyle,
-    Span,
-    doubtful,
     in_turn,
     joined,
-    key_times,
     needed,
     pieces_of,
-    refined,
 )
 from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.rig.body import mass_of
-from dancetutor_cli.dance.settings import MotionSettings, SettingsCourse, default_settings, state_weights
+from dancetutor_cli.dance.settings import MotionSettings, SettingsCourse, Span, default_settings, state_weights
 from dancetutor_cli.dance.settings_feet import WalkSettings
 from dancetutor_cli.dance.settle import heels_may_rise, settle, targets_at
 from dancetutor_cli.dance.smoothing import sample_path
@@ -85,7 +81,7 @@ def bake(
     section: Span | None = None,
     **manner: Unpack[Manner],
 ) -> Motion:
-    """Make the dancer play a chart.
+    """Bake the dance of a play, for tests and tools. The commands bake the pieces of a `performance.Performance`.
 
     Parameters
     ----------
@@ -146,7 +142,7 @@ def mines_of(play: Play, pad: Pad) -> Array:
 def bake_plan(
     plan: Plan, context: Context, fps: float, section: Span | None = None, run: PieceRunner = in_turn
 ) -> Motion:
-    """Bake a plan, or the section of it between two seconds. Arguments as in `bake`.
+    """Bake a plan, or the section of it between two seconds, for tests and tools. Arguments as in `bake`.
 
     run : bakes the pieces of a long song, in turn or in several processes; the result is the same
     """

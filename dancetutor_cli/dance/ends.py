@@ -14,11 +14,13 @@ import numpy as np
 
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.footwork.homing import homeward
+from dancetutor_cli.dance.keys import Keys
 from dancetutor_cli.dance.motion import Cut, Motion, sample
 from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, repinned
-from dancetutor_cli.dance.pieces import MARGIN, OVERLAP, Keys, Piece, RagdollStyle, Span, piece_of, track_from
+from dancetutor_cli.dance.pieces import MARGIN, OVERLAP, Piece, RagdollStyle, piece_of, track_from
 from dancetutor_cli.dance.plan import FootTrack, Plan
 from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.settings import Span
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array, Flags, Poses
 

@@ -122,12 +122,14 @@ _SECTIONS = tuple(f.name for f in fields(MotionSettings))
 
 # Numbers that change over a song: a state before the first change, one after it, and so on.
 
-Span = tuple[float, float]
+Span = tuple[float, float]  # first and last second
 WHOLE = 1.0 - 1e-9  # share from which on a state counts as the only one
 
 
 def state_weights(changes: Sequence[Span], times: Array) -> Array:
-    """The share (f, k + 1) of each state at times (f,); changes : k spans, seconds, in order, without overlap."""
+    """Return the share (f, k + 1) of each state at times (f,); changes : k spans, seconds, in order, without
+    overlap.
+    """
     from dancetutor_cli.dance.smoothing import smooth  # numba, which help does without
 
     after = np.array([smooth((times - start) / (end - start)) for start, end in changes]).reshape(-1, len(times))
