@@ -22,7 +22,7 @@ from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
 
 
 def reduction(duration: ArrayLike, fast: float, longest: float) -> Array:
-    """How much a move is reduced for lack of time: 0 at `longest`, 1 at `fast` or less, as a cube (thesis 5.6.1)."""
+    """Return how much lack of time reduces a move: 0 at `longest`, 1 at `fast` or less, as a cube (thesis 5.6.1)."""
     s = np.clip((longest - np.asarray(duration, dtype=np.float64)) / max(longest - fast, 1e-9), 0.0, 1.0)
     return np.asarray(s**3)
 
@@ -160,7 +160,7 @@ def detour(way: Way, other: Array, other_yaw: Array | float, step: StepSettings,
 
 @lru_cache(maxsize=256)
 def _by_share(step: StepSettings, even: float) -> tuple[Array, Array]:
-    """How far a swing has come at the `SHARES`, and how far it has turned; callers must not change the arrays."""
+    """Return how far a swing has come and turned at the `SHARES`; callers must not change the arrays."""
     return travelled(SHARES, step, even), swung(SHARES, step)
 
 
@@ -183,7 +183,7 @@ def wrung(way: Way, line: Array, step: StepSettings) -> Array:
 
 
 def enough(gaps: Array, e: Array, apart: float) -> Array:
-    """The required room (k,) of a way: at most the room at its ends, which are given. e : how far the swing has come"""
+    """Return the required room (k,) of a way: at most that at its ends. e : how far the swing has come"""
     return np.asarray(np.minimum(apart, gaps[0] + e * (gaps[-1] - gaps[0])))
 
 
@@ -211,7 +211,7 @@ def headings(yaw: Array) -> Array:
 
 
 def gaps_at(balls: Array, yaws: Array, other: Array, other_yaw: float) -> Array:
-    """The least distances (k,) in metres of the middle lines of shoes, balls (k, 2), yaws (k,), to another shoe."""
+    """Return the least distances (k,), metres, of middle lines of shoes, balls (k, 2), yaws (k,), to another shoe."""
     ahead = headings(yaws)
     middle, still = balls - BALL_AHEAD * ahead, headings(np.array(other_yaw))
     rest = other - BALL_AHEAD * still
@@ -230,7 +230,7 @@ def over(panels: Array, balls: Array, toes: Array, air: float) -> NDArray[np.boo
 
 
 def segment_gaps(a: Array, b: Array, c: Array, d: Array) -> Array:
-    """The least distance (...) between segments a-b and c-d in the plane, (..., 2) each; c-d may be one for all."""
+    """Return the least distance (...) of segments a-b and c-d in the plane, (..., 2); c-d may be one for all."""
     same = (x if x.shape == a.shape else np.broadcast_to(x, a.shape) for x in (a, b, c, d))
     p, q, r, t = (np.ascontiguousarray(x).reshape(-1, 2) for x in same)
     out = np.empty(a.size // 2)

@@ -32,7 +32,7 @@ HOLD_GRACE = 0.25  # seconds that a held note may be let go: StepMania's TimingW
 
 
 def panels_on_ground(pad: Pad) -> Array:
-    """World (x, z) of every panel's centre, (c, 2); the pad's centre is the origin and +Z points to the screen."""
+    """Return world (x, z) of every panel's centre, (c, 2); the origin is the pad's centre, the screen is at +Z."""
     centre = np.asarray(pad.centre, dtype=np.float64)
     panels = np.asarray(pad.panels, dtype=np.float64) - centre
     return np.asarray(panels * np.array([-PANEL, PANEL]))
@@ -77,7 +77,7 @@ def room_on(panels: Array, column: int, step: StepSettings) -> Array:
 
 
 def on_panel(ball: Array, toes: float, spot: Spot) -> Array:
-    """The place nearest to this ball (2,) at which the ball and the middle of the sole are in their allowed places."""
+    """Return the place nearest to this ball (2,) that keeps ball and middle of the sole in their allowed places."""
     centre, room, ahead = spot.centre, spot.room, BALL_AHEAD * heading(toes)
     ball = np.minimum(np.maximum(ball, centre - room), centre + room)  # np.clip takes three times as long
     low, high = centre - spot.middle_room, centre + spot.middle_room
@@ -118,7 +118,7 @@ class Context:
         return self if self.course is None else replace(self, settings=self.course.at(second))
 
     def states(self, start: float, end: float) -> tuple[tuple[Context, ...], tuple[Span, ...]]:
-        """The context with the settings of each state between two seconds, and the times of changes between states."""
+        """Return the context with the settings of each state between two seconds, and when states change."""
         if self.course is None:
             return (self,), ()
         part = self.course.within(start, end)
@@ -159,7 +159,8 @@ def bar_of(pad: Pad, settings: BarSettings) -> Bar:
 
 
 def holding(settings: MotionSettings) -> MotionSettings:
-    """The settings for a dancer who holds the bar: she stands a little lower, because her feet are far ahead of her.
+    """Return the settings for a dancer who holds the bar: she stands a little lower, because her feet are far ahead of
+    her.
 
     In streams she goes down a little, and her chest faces the screen more, because both hands hold the bar. For jumps
     she goes down half as far, because the bar carries a part of the weight.
@@ -224,7 +225,7 @@ def around(grip: Grip, times: Array, reach: float) -> slice:
 
 
 def way_time(grip: Grip, reach: float) -> float:
-    """The seconds that the hand of a grip needs to the rail and from it; in front of the body, its way is longer."""
+    """Return the seconds of a hand's way to the rail and from it; in front of the body, its way is longer."""
     return ACROSS_SLOWER * reach if grip.across else reach
 
 

@@ -55,8 +55,8 @@ def turning(start: Array, end: Array, middles: tuple[Array, Array], turn: Array,
 def jump_ways(
     starts: Array, start_yaws: Array, ends: Array, end_yaws: Array, turn: float, settings: MotionSettings
 ) -> tuple[float, Array]:
-    """How much of a jump's path goes around the middle, and (2, 2) how far each foot goes aside along x and z to keep
-    the shoes apart.
+    """Return how much of a jump's path goes around the middle, and (2, 2) how far each foot goes aside along x and z to
+    keep the shoes apart.
 
     Parameters
     ----------
@@ -216,8 +216,8 @@ def _climb(before: Array, after: Array, s: Array, walk: WalkSettings) -> Array:
 
 
 def _rocked(ball: Array, yaw: Array, pitch: Array) -> Array:
-    """The ball (f, 3) of a foot whose toes are up (pitch below 0). The edge of its heel is where it would be if the
-    foot were flat.
+    """Return the ball (f, 3) of a foot whose toes are up (pitch below 0). The edge of its heel is where it would be if
+    the foot were flat.
     """
     up = -np.minimum(pitch, 0.0)
     back = HEEL_BACK * (1.0 - np.cos(up)) + BALL_UP * np.sin(up)
@@ -229,12 +229,13 @@ def _rocked(ball: Array, yaw: Array, pitch: Array) -> Array:
 
 
 def _are(track: FootTrack, *kinds: type[Move]) -> NDArray[np.bool_]:
-    """Which of a foot's moves are of some kinds."""
+    """Return which of a foot's moves are of some kinds."""
     return np.array([isinstance(move, kinds) for move in track.moves])
 
 
 def _low(track: FootTrack, even: float) -> Array:
-    """The last part of each move's time, in which a foot that jumps comes straight down; otherwise it would slide.
+    """Return the last part of each move's time, in which a foot that jumps comes straight down; otherwise it would
+    slide.
 
     even : as of `evenness`, of jumps
     """

@@ -87,7 +87,7 @@ def gait_pose(gait: Gait, phase: Array, walk: WalkSettings) -> GaitPose:
 
 
 def blended_pose(gaits: tuple[Gait, Gait], share: float, phase: Array, walk: WalkSettings) -> GaitPose:
-    """The blend of both gaits' poses at the same normalised times (f,), with `share` (0 to 1) of the quick one."""
+    """Return the blend of both gaits' poses at the same normalised times (f,); share : of the quick one, 0 to 1"""
     a, b = (gait_pose(gait, phase, walk) for gait in gaits)
     mixed = (getattr(a, f.name) + share * (getattr(b, f.name) - getattr(a, f.name)) for f in fields(GaitPose))
     return GaitPose(*mixed)
@@ -139,7 +139,7 @@ def walking(walks: tuple[Route, ...], times: Array, settings: WalkSettings) -> G
 
 
 def gaze_ahead(plan: Plan, times: Array, settings: WalkSettings) -> Array:
-    """How much (f,) the dancer looks where she goes, instead of at the screen: on her way to the pad and from it."""
+    """Return how much (f,) the dancer looks where she goes, not at the screen: on her way to the pad or from it."""
     walks = tuple(w for w in plan.walks if w.end <= plan.first or w.start >= plan.last)
     gait = walking(walks, times + settings.gaze_ahead, settings)
     return np.zeros(len(times)) if gait is None else gait.own

@@ -55,7 +55,7 @@ class BarTrunk:
 
 
 def trunk_of(plan: Plan, times: Array, context: Context) -> BarTrunk:
-    """Where the upper body will be, computed in parts so that an hour needs little memory."""
+    """Return where the upper body will be, computed in parts so that an hour needs little memory."""
     parts = []
     for first in np.arange(times[0], times[-1] + 1e-9, PART):
         parts.append(_part(plan, times[(times >= first) & (times < first + PART)], context))
@@ -63,7 +63,7 @@ def trunk_of(plan: Plan, times: Array, context: Context) -> BarTrunk:
 
 
 def _part(plan: Plan, at: Array, context: Context) -> BarTrunk:
-    """The upper body at the times `at`, by a rough bake without the hands on the bar."""
+    """Return the upper body at the times `at`, by a rough bake without the hands on the bar."""
     skeleton = context.skeleton
     grid = np.arange(np.floor((at[0] - MARGIN) * BODY_RATE), np.ceil((at[-1] + MARGIN) * BODY_RATE) + 1) / BODY_RATE
     feet = both_feet(plan.feet, grid, context.settings)
@@ -153,7 +153,7 @@ class Arm:
 
 
 def firm(free: Flags, early: float) -> Flags:
-    """Where the hand is free now and also so many seconds before and after."""
+    """Return where the hand is free now and also so many seconds before and after."""
     width = max(1, round(early * RATE))
     held = np.concatenate((np.repeat(free[:1], width), free, np.repeat(free[-1:], width)))
     return np.asarray(np.convolve(~held, np.ones(2 * width + 1), "valid") < 0.5)
@@ -188,8 +188,8 @@ def turns(plan: Plan, times: Array, trunk: BarTrunk, busy: Flags, context: Conte
 
 
 def crossings(wanted: tuple[Grip, ...], times: Array, trunk: BarTrunk, busy: Flags, context: Context) -> Iterator[Grip]:
-    """The part of each `wanted` grip that an arm reaches from a body that has turned for all of them, with its place on
-    the rail. A hand has gone before the next one comes. Grips are in order of time.
+    """Return the part of each `wanted` grip that an arm reaches from a body that has turned for all of them, with its
+    place on the rail. A hand has gone before the next one comes. Grips are in order of time.
     """
     numbers, reach = context.settings.across, context.settings.bar.reach_time
     arms = [Arm(side, trunk, busy, context) for side in (0, 1)]
@@ -219,8 +219,8 @@ def _longest_crossing(arm: Arm, a: int, b: int) -> tuple[int, int, float]:
 def around_crossings(
     plan: Plan, times: Array, grips: tuple[Grip, ...], places: tuple[Flags, Array], context: Context
 ) -> tuple[Flags, Array]:
-    """Which hands (n, 2) may be on the rail on their own side, and how far (n, 2) beside the body each is there, while
-    others cross over.
+    """Return which hands (n, 2) may be on the rail on their own side, and how far (n, 2) beside the body each is there,
+    while others cross over.
 
     The far hand is away before and after. The near hand holds on behind the far one or leaves the rail, by chance.
 
@@ -259,7 +259,7 @@ LOOK = 10.0  # seconds that are checked together for how long a hand may stay
 
 
 def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
-    """The plan with when each hand rests on the bar between the seconds of `span`, in order of start.
+    """Return the plan with when each hand rests on the bar between the seconds of `span`, in order of start.
 
     She holds it with both hands or with one, in turn as `bar.grip_phrases` says. A hand leaves the rail before the body
     goes or turns so far that its arm would not reach, would bend beyond the limits of its joints or go through the
@@ -317,7 +317,7 @@ def _pieces(times: Array, arm: Arm, bar: BarSettings) -> Iterator[Grip]:
 
 
 def _longest(arm: Arm, start: int, end: int) -> tuple[float, int]:
-    """Where a hand that takes the rail at check `start` may stay longest, and the check at which it must have gone."""
+    """Return where a hand that takes the rail at check `start` may stay longest, and the check of its latest end."""
     soon = arm.place[start : min(start + round(arm.settings.bar.place_time * RATE), end)].mean()
     best, stop = float(soon), start
     for aside in GRIP_OFFSETS:

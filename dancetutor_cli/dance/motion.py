@@ -139,7 +139,7 @@ def shifted(motion: Motion, x: float, z: float) -> Motion:
 
 
 def padded_from(motion: Motion, second: float) -> Motion:
-    """A motion that begins at `second` of the music or earlier; the dancer stands in its first pose until it begins."""
+    """Return a motion that begins at `second` or earlier; the dancer stands in its first pose until it begins."""
     if second >= motion.times[0]:
         return motion
     return replace(

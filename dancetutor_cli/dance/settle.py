@@ -99,7 +99,7 @@ def _around(coarse: Array, gives: Array, times: Array) -> Array:
 
 
 def targets_at(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Context) -> Targets:
-    """The targets of the IK at times (f,) at which feet are sampled, with heels raised as the trajectory demands."""
+    """Return the IK's targets at times (f,) at which feet are sampled, heels raised as the trajectory demands."""
     at, feet = sampled
     up = sample_path(body.heels, body.times, at) + waiting_at(plan, at, context).heels
     return ik_targets(plan, body, raised(feet, up), at, context)
@@ -112,7 +112,7 @@ def hips_of(skeleton: Skeleton, poses: Poses) -> Array:
 
 
 def _deeper(plan: Plan, deeper: Array, at: Array, drawn: Array, context: Context) -> Array:
-    """How much deeper (p,) the body bends for each press, after palms have pulled the root by `drawn` (f,) metres."""
+    """Return how much deeper (p,) the body bends for each press, after palms pulled the root by `drawn` (f,) metres."""
     out, most = deeper.copy(), max(context.settings.hands.pelvis - context.settings.hands.lowest, 0.0)
     for k, press in enumerate(plan.presses):
         near = (at >= press.start - AROUND_PRESS) & (at <= press.end + AROUND_PRESS)

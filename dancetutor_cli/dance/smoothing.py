@@ -97,7 +97,7 @@ def steady_spline(times: Array, values: Array, at: Array) -> Array:
 
 
 def upper_envelope(times: Array, values: Array, span: float) -> Array:
-    """A smooth curve (f,) nowhere below `values` (f,) nor 0: their maximum over `span` seconds, then averaged."""
+    """Return a smooth curve (f,) nowhere below `values` (f,) nor 0: their maximum over `span` seconds, averaged."""
     rate = 120.0
     half = max(1, round(span * rate / 2))
     grid = np.arange(times[0], times[-1] + 1 / rate, 1 / rate)
@@ -111,7 +111,8 @@ def upper_envelope(times: Array, values: Array, span: float) -> Array:
 
 
 def both_envelopes(times: Array, values: Array, span: float) -> Array:
-    """Values (f, d) of either sign, each spread by `upper_envelope`: they begin before their time and end after it.
+    """Return values (f, d) of either sign, each spread by `upper_envelope`: they begin before their time and end after
+    it.
 
     times : (f,) seconds; span : seconds
     """
@@ -175,7 +176,7 @@ class Controller:
 
 
 def follow(target: Array, rate: float, controller: Controller) -> Array:
-    """The controlled value for a target (n, d), evenly spaced at `rate` per second; it starts at rest on the target."""
+    """Return the controlled value for an even target (n, d), `rate` per second; it starts at rest on the target."""
     if len(target) < 2:
         return target.copy()
     times = np.arange(len(target)) + controller.lag * rate

@@ -88,7 +88,7 @@ Song = tuple[int, ...]
 
 
 def song_of(plan: Plan, context: Context) -> Song:
-    """The seed of random choices for a song and a dancer, the same for the mirror image and for a piece of the song."""
+    """Return the seed of random choices for a song and a dancer, the same for the mirror image and each piece."""
     return *plan.song, *context.own
 
 
@@ -130,7 +130,8 @@ def _waits(plan: Plan, context: Context) -> Iterator[tuple[float, float]]:
 
 
 def _shift(times: Array, context: Context) -> Array:
-    """The place of the weight (n,), metres, positive over the left foot: over one foot on a beat, then on its way.
+    """Return the place of the weight (n,), metres, positive over the left foot: over one foot on a beat, then on its
+    way.
 
     Some beats are danced farther than others, and sometimes the dancer stays on one foot.
     """
@@ -154,7 +155,7 @@ def _shift(times: Array, context: Context) -> Array:
 
 
 def slowly(song: Song, times: Array, every: float, salt: int) -> Array:
-    """A value (n,) from -1 to 1 that stays for a while and then changes; salt : another number gives another value"""
+    """Return a value (n,) from -1 to 1 that stays for a while and then changes; each `salt` gives another value."""
     cell = times / every + salt / 3
     knots = np.arange(np.floor(cell.min()), np.floor(cell.max()) + 2)
     place = np.array([_knot(song, int(knot), salt) for knot in knots])

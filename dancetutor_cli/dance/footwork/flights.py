@@ -47,7 +47,7 @@ class Flight:
 
 
 def flown(footing: Footing, flight: Flight, goals: Goals, pitches: list[Pitches]) -> Footing:
-    """The footing after both feet have gone to their goals, on ways that keep the shoes apart."""
+    """Return the footing after both feet have gone to their goals, on ways that keep the shoes apart."""
     jump, feet = footing.settings.jump, footing.feet
     starts, ends = np.array([f.ball for f in feet]), np.array([ball for ball, _ in goals])
     before = np.array([footing.toes(f) for f in feet])
@@ -118,7 +118,8 @@ def take_off_for(footing: Footing, time: float, flight: float) -> float:
 
 
 def tuck_for(distance: float, seconds: float, jump: JumpSettings) -> float:
-    """How much more feet are pulled up that travel so far in a flight of so many seconds; not in short, low flights.
+    """Return how much more feet are pulled up that travel so far in a flight of so many seconds; not in short, low
+    flights.
 
     Knees that fold and open again within a tenth of a second throw the body. In the shortest flights, feet rise only a
     little more than the body, just enough that their landing can be seen.
@@ -165,7 +166,7 @@ def leap(row: Row, foot: FootState, goal: tuple[Array, float], columns: list[int
 
 
 def galloping(row: Row, side: int, footing: Footing) -> Footing:
-    """The footing in which both feet are about to take off together, if a gallop begins with the row's step."""
+    """Return the footing in which both feet are about to take off together, if a gallop begins with the row's step."""
     jump, rows, i = footing.settings.jump, row.play.rows, row.index
     if i + 1 >= len(rows) or row.duration < jump.gallop_wait:
         return footing

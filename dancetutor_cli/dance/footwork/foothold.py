@@ -79,7 +79,7 @@ class Heel:
 
 
 def heel_of_step(step: StepSettings, haste: float = 0.0) -> Heel:
-    """The heel of a step. With haste, 0 to 1 as in `Row`, it rises less, because a foot that rocks throws the body."""
+    """Return the heel of a step. With haste, 0 to 1 as in `Row`, it rises less, because rocking throws the body."""
     land = step.land_pitch + haste * (step.land_hasty - step.land_pitch)
     swing = step.swing_flat + haste * (step.swing_flat_hasty - step.swing_flat)
     rest = step.stream_pitch + haste * (step.stream_pitch_hasty - step.stream_pitch)
@@ -173,7 +173,7 @@ def beyond_the_edge(ground: Ground, balls: Array) -> Array:
 
 
 def off_the_middle(spot: Spot, balls: Array, toes: Array) -> Array:
-    """How far (k,) the middles of shoes, balls (k, 2) and toes (k,), are outside their allowed places, metres."""
+    """Return how far (k,) middles of shoes, balls (k, 2), toes (k,), are outside their allowed places, metres."""
     middles = balls - BALL_AHEAD * headings(toes)
     return np.asarray(np.maximum(np.abs(middles - spot.centre) - spot.middle_room, 0.0).sum(axis=1))
 
@@ -211,7 +211,7 @@ def _bracket(footing: Footing, foot: FootState, goal: Goal) -> tuple[Array, floa
 
 
 def heel_up(step: StepSettings, cut: float, heel: Heel, columns: list[int]) -> Pitches:
-    """The pitches of a swing, radians: as the toes leave, at most, at landing, afterwards; fast steps stay flat."""
+    """Return the pitches of a swing, radians: as toes leave, at most, landing, afterwards; fast steps stay flat."""
     lift, most, land = heel.degrees
     rest = heel.rest * cut
     if len(columns) > 1:

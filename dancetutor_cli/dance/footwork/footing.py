@@ -137,7 +137,7 @@ class FootState:
         return 1.0 if self.side == 0 else -1.0
 
     def with_move(self, move: Move, target: Array, yaw: float) -> FootState:
-        """The foot after one more move, standing at its target."""
+        """Return the foot after one more move, standing at its target."""
         if self.moves and move.lift - self.moves[-1].land < self.step.heel_stays:
             heel = self.moves[-1].pitches[2]
             move = replace(move, pitches=(heel, max(heel, move.pitches[1]), *move.pitches[2:]))
@@ -232,7 +232,7 @@ class Footing:
         return float(np.radians(self.context.settings.step.toe_out))
 
     def in_context(self, context: Context) -> Footing:
-        """The same footing with other settings."""
+        """Return the same footing with other settings."""
         left, right = (replace(foot, step=context.settings.step) for foot in self.feet)
         return replace(self, context=context, feet=(left, right))
 

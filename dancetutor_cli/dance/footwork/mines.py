@@ -54,7 +54,7 @@ def avoid_mines(row: Row, footing: Footing) -> Proposal:
 
 
 def _hopped(footing: Footing, time: float) -> Footing:
-    """The footing after a hop of both feet to the middle of the pad, if there is still time to leave the ground."""
+    """Return the footing after a hop of both feet to the middle of the pad, if there is time to leave the ground."""
     half, stand = footing.settings.mines.hop / 2, footing.settings.step.stand
     pushed = min(time - footing.settings.mines.push, max(f.landed for f in footing.feet) + stand)
     take_off = max(time - half, pushed, *(f.earliest(time) for f in footing.feet))

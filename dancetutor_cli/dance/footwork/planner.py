@@ -146,7 +146,7 @@ class Planner:
             self.turns.append(proposal.turn)
 
     def _ended(self, moves: tuple[tuple[Move, ...], tuple[Move, ...]]) -> tuple[Contact, ...]:
-        """All touches, in order, each with its latest end. A foot that is not needed any more stays for a while."""
+        """Return all touches, in order, each with its latest end. A foot that is not needed stays for a while."""
         self.touches.sort(key=lambda c: (c.start, c.limb, c.column))
         lifts = [[m.lift for m in of_foot if isinstance(m, Swing)][-1:] for of_foot in moves]
         stays = self.settings.step.longest
@@ -163,7 +163,7 @@ class Planner:
 
 
 def with_walks(plan: Plan, mines: Array, gait: str, context: Context) -> Plan:
-    """The plan with walks where there is time for one. mines : (m,) seconds at which mines pass; gait : its name"""
+    """Return the plan with walks where there is time. mines : (m,) seconds at which mines pass; gait : its name"""
     for wait in waits(plan, mines, context.settings.walk.wait):
         plan = inserted(plan, walk_over(plan, wait, gait, context), context)
     plan = inserted(plan, walk_on(plan, mines, gait, context), context)

@@ -37,7 +37,7 @@ def under_the_foot(row: Row, foot: FootState) -> list[int]:
 
 
 def _other_part(row: Row, side: int, column: int) -> list[int]:
-    """The neighbour of a panel that a heel or toe taps alone, if the foot's other end taps it soon (two rolls)."""
+    """Return the neighbour of a panel that heel or toe taps alone, if the other end taps it soon (two rolls)."""
     rows, part, i, panels = row.play.rows, row.play.part, row.index, row.context.panels
     for j in (i + 1, i - 1, i + 2, i - 2):
         if not 0 <= j < len(rows) or abs(rows.second[j] - rows.second[i]) > row.context.settings.step.bracket_between:

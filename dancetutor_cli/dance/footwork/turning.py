@@ -110,7 +110,8 @@ class Facing:
         return float(min(max((low + high) / 2, normal - step.turn_crossed), normal + step.turn_crossed))
 
     def turn(self, row: Row, footing: Footing) -> float:
-        """The turn of the feet normal at a row, degrees, positive left: of the form, of the play, or the shorter.
+        """Return the turn of the feet normal at a row, degrees, positive left: of the form, of the play, or the
+        shorter.
 
         The caller must ask for rows in order, for each before its aim.
         """

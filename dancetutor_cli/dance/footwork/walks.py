@@ -107,7 +107,7 @@ def side_of(plan: Plan, context: Context) -> int:
 
 
 def _place_off_pad(ground: Ground, side: int, far: float) -> float:
-    """A place along x, `far` metres beside the pad, on the dancer's left (0) or right (1) as she faces the screen."""
+    """Return a place along x, `far` metres beside the pad, on the left (0) or right (1) of who faces the screen."""
     return ground.high[0] + far if side == 0 else ground.low[0] - far
 
 

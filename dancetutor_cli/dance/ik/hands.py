@@ -52,7 +52,7 @@ ACROSS = np.array([[0.4, -0.55, 0.7], [-0.4, -0.55, 0.7]])  # directions of its 
 
 
 def palm_down(skeleton: Skeleton, side: int, fingers: Array) -> Array:
-    """The world rotation (4,) of a hand whose palm faces the ground, fingers along the horizontal unit vector (3,)."""
+    """Return the world rotation (4,) of a hand with its palm down, fingers along the horizontal unit vector (3,)."""
     along, normal = hand_direction(skeleton, SIDES[side]), palm_normal(skeleton, SIDES[side])
     down = np.array([0.0, -1.0, 0.0])
     rest = np.column_stack((along, normal, np.cross(along, normal)))
@@ -100,7 +100,7 @@ def elbows_on_bar(chest: Array, settings: BarSettings) -> Array:
 
 
 def elbows_across(chest: Array) -> Array:
-    """The directions (f, 2, 3) of elbows of hands that have crossed over to the bar, for chests turned by (f, 4)."""
+    """Return the directions (f, 2, 3) of elbows of hands that have crossed over to the bar; chest : turns (f, 4)"""
     return quat.rotate(quat.swing_twist(chest, UP)[1][:, None], ACROSS)
 
 

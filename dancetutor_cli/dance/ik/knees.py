@@ -115,7 +115,7 @@ class Legs:
 
 
 def _swivelled(reach: Array, poles: Array, given: Array) -> Array:
-    """Unit vectors (f, 2, 3) square to hip-ankle lines, in the planes of the poles turned outward by (f, 2) radians."""
+    """Return unit vectors (f, 2, 3) square to hip-ankle lines: of the poles, turned outward by (f, 2) radians."""
     line, ahead = reach / np.linalg.norm(reach, axis=2, keepdims=True), square_to(reach, poles)
     aside = np.cross(line, ahead) * np.array([[-1.0], [1.0]])
     return np.asarray(np.cos(given)[..., None] * ahead + np.sin(given)[..., None] * aside)

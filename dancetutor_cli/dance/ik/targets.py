@@ -70,7 +70,7 @@ class Below:
 
 
 def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, below: Below, context: Context) -> HandTargets:
-    """Targets at times `at` (f,); torso, below : at the same times, as the IK will be asked for them."""
+    """Return targets at times `at` (f,); torso, below : at the same times, as the IK will be asked for them."""
     lean, upright = quat.swing_twist(torso.chest, UP)
     hang, lag, held = (sample_path(p, body.times, at) for p in body.hands or free_hands(plan, body, context))
     arms = context.settings.arms
@@ -107,8 +107,8 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, below: Be
 
 
 def _out_from_a_lean(wrists: Array, torso: Torso, upright: Array, arms: ArmSettings) -> Array:
-    """How wrists (f, 2, 3) give way, (f, 2, 3), to a trunk that leans to the other side: softly, outward from the
-    shoulder, which is then over the trunk, as people do for balance.
+    """Return how wrists (f, 2, 3) give way, (f, 2, 3), to a trunk that leans to the other side: softly, outward from
+    the shoulder, which is then over the trunk, as people do for balance.
     """
     across = torso.shoulders[:, 0] - torso.shoulders[:, 1]
     higher = np.degrees(np.arcsin(np.clip(across[:, 1] / np.linalg.norm(across, axis=1), -1.0, 1.0)))
@@ -121,14 +121,14 @@ def _out_from_a_lean(wrists: Array, torso: Torso, upright: Array, arms: ArmSetti
 
 
 def _bent(arm: Array, longest: float) -> Array:
-    """What keeps arms (f, 2, 3) from shoulder to wrist softly shorter than `longest`, (f, 2, 3): for bent elbows."""
+    """Return what keeps arms (f, 2, 3), shoulder to wrist, softly shorter than `longest`, so that elbows bend."""
     far = np.linalg.norm(arm, axis=2, keepdims=True)
     over = soft_excess(far - longest, BENT_SOFT)
     return np.asarray(-over / np.maximum(far, 1e-9) * arm)
 
 
 def _on_her_own_pad(x: Array, context: Context) -> Array:
-    """How wrists at x (f, 2) give way, (f, 2), to another dancer, softly: they stay within her pad's edge."""
+    """Return how wrists at x (f, 2) give way, (f, 2), to another dancer, softly: they stay within her pad's edge."""
     if context.sides is None:
         return np.zeros_like(x)
     outward, keep = 1.0 - 2.0 * context.sides[0], context.settings.arms.own_pad
@@ -138,7 +138,8 @@ def _on_her_own_pad(x: Array, context: Context) -> Array:
 
 
 def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, Array, Array]:
-    """Where free hands hang from the shoulders, in the chest's upright axes, and how far inertia takes them from there.
+    """Return where free hands hang from the shoulders, in the chest's upright axes, and how far inertia takes them from
+    there.
 
     Both (n, 2, 3) at the body's times, the second in the world; and (n, 2), 0 to 1, how much they must keep clear of
     the trunk: as far as they are held back, and always if there is a bar.
@@ -191,7 +192,7 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
 
 
 def _upward(x: Array) -> Array:
-    """What of x is above 0, softly over some `UP_SOFT` metres, and 0 at 0."""
+    """Return what of x is above 0, softly over some `UP_SOFT` metres, and 0 at 0."""
     return np.asarray((x + np.sqrt(x**2 + UP_SOFT**2) - UP_SOFT) / 2.0)
 
 
@@ -208,14 +209,14 @@ def _hanging(carried: Array, effort: tuple[Array, Array], swing: tuple[Array, Ar
 
 
 def _at_most(way: Array, most: float) -> Array:
-    """Ways (n, 3) that are softly kept shorter than `most`."""
+    """Return ways (n, 3) that are softly kept shorter than `most`."""
     far = np.linalg.norm(way, axis=1, keepdims=True)
     return np.asarray(way * (most * np.tanh(far / most) / np.maximum(far, 1e-9)))
 
 
 def _speed_limit_offset(path: Array, rate: float, arms: ArmSettings) -> tuple[Array, Array]:
-    """How a hand leaves its path (n, 3) in the world, (n, 3): where it is too quick it takes a shorter way. And how
-    much (n,) it is held back, 0 to 1.
+    """Return how a hand leaves its path (n, 3) in the world, (n, 3): where it is too quick it takes a shorter way. And
+    how much (n,) it is held back, 0 to 1.
     """
     ones = np.ones(len(path))
     quick = np.linalg.norm(np.gradient(path, axis=0), axis=1) * rate
@@ -227,14 +228,15 @@ def _speed_limit_offset(path: Array, rate: float, arms: ArmSettings) -> tuple[Ar
 
 
 def lately(tempo: Array, rate: float, around: float) -> Array:
-    """Mean (n,) of the tempo over so many seconds around: the effort, with which hands rise slowly."""
+    """Return the mean (n,) of the tempo over so many seconds around: the effort, with which hands rise slowly."""
     width = max(1, round(around * rate))
     summed = np.cumsum(np.concatenate((np.repeat(tempo[:1], width), tempo, np.repeat(tempo[-1:], width))))
     return np.asarray((summed[2 * width :] - summed[: -2 * width]) / (2 * width))
 
 
 def _behind_the_chest(hands: tuple[Array, Array], yaw: Array, rate: float, arms: ArmSettings) -> Array:
-    """Hands (n, 2, 3) in quick turns of the chest, yaw (n,) radians: nearer to the body, and later than the chest.
+    """Return hands (n, 2, 3) in quick turns of the chest, yaw (n,) radians: nearer to the body, and later than the
+    chest.
 
     hands : where they hang, and the part of it by which they are carried, which a quick turn takes away
     """
@@ -253,7 +255,7 @@ def _behind_the_chest(hands: tuple[Array, Array], yaw: Array, rate: float, arms:
 
 
 def _wandering(times: Array, arms: ArmSettings) -> Array:
-    """Slow movements (n, 2, 3) of both hands, about 1 far, different for each: nobody's arms mirror each other."""
+    """Return slow movements (n, 2, 3) of both hands, about 1 far: nobody's arms mirror each other."""
     hands = np.arange(6).reshape(2, 3)
     waves = ((arms.wander_slow, arms.wander_behind), (arms.wander_quick, arms.wander_quick_behind))
     slow, fast = (np.sin(2 * np.pi * (times[:, None, None] / every + share * hands)) for every, share in waves)
@@ -261,9 +263,7 @@ def _wandering(times: Array, arms: ArmSettings) -> Array:
 
 
 def _swing(plan: Plan, body: Trajectory, settings: MotionSettings) -> Array:
-    """How far forward each hand (n, 2) is at the body's times: as the momentum of the legs demands, or as the dancer
-    walks.
-    """
+    """Return how far forward each hand (n, 2) is at the body's times: for the legs' momentum, or as in a walk."""
     both = np.outer(body.arms[:, 0], (-1.0, 1.0))
     gait = walking(plan.walks, body.times, settings.walk)
     return both if gait is None else np.asarray((1.0 - gait.own[:, None]) * both + gait.hands)
@@ -300,7 +300,7 @@ def _press(press: Press, at: Array, hands: HandTargets, body: Trajectory, contex
 
 
 def _lay_down(press: Press, body: Trajectory, context: Context) -> tuple[Array, Array]:
-    """How a palm lies on its panel: the hand's rotation (4,) and where its elbow points (3,).
+    """Return how a palm lies on its panel: the hand's rotation (4,) and where its elbow points (3,).
 
     Of many directions, the one that is easiest for shoulder and wrist as the body is at the note and as the palm
     leaves; and among these the one whose fingers point most from the body to the panel.
@@ -339,7 +339,7 @@ TOES_BEND = np.radians(40.0)  # a foot whose heel is farther up carries its toes
 
 
 def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Context) -> Targets:
-    """Targets at the times `at` (f,); `feet` are sampled there, `body` on its own even times."""
+    """Return targets at the times `at` (f,); `feet` are sampled there, `body` on its own even times."""
     skeleton = context.skeleton
     trunk = trunk_at(body, at, context)
     gait = walking(plan.walks, at, context.settings.walk)
@@ -368,7 +368,7 @@ def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Con
 
 
 def translated(targets: Targets, by: Array) -> Targets:
-    """The same targets with the body moved by (f, 3) metres; feet and pinned palms stay."""
+    """Return the same targets with the body moved by (f, 3) metres; feet and pinned palms stay."""
     shoulders = targets.shoulders + by[:, None]
     wrists = targets.wrists + by[:, None] * (1.0 - targets.pinned[..., None])
     return replace(targets, pelvis=targets.pelvis + by, shoulders=shoulders, wrists=wrists)

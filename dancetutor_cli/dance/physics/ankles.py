@@ -1,6 +1,4 @@
-"""Ankles within their limits over held feet: legs turn about their own axis, feet in the air turn, standing
-feet lean.
-"""
+"""Ankles within their limits over held feet: legs turn about the line to the hip, feet in the air turn, others lean."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ class Blend:
         return np.asarray(state_weights(self.changes, times) @ np.array(self.states))
 
     def within(self, times: Array) -> tuple[list[Style], Array]:
-        """The styles that are used at any of the times (f,), with the largest share first, and their shares (f, s)."""
+        """Return the styles that are used at any of the times (f,), the largest share first, and shares (f, s)."""
         shares = self.shares(times)
         total = shares.sum(axis=0)
         order = [int(k) for k in np.argsort(-total, kind="stable") if total[k] > 0.0]
@@ -73,7 +73,7 @@ class StyleChoice:
     measures: tuple[int, ...] = ()
 
     def blend(self, timing: Timing | None = None) -> Blend:
-        """The blend in a song; each change takes place in the measure before it. Raises UsageError without a song."""
+        """Return the blend in a song; each change is in the measure before it. Raises UsageError without a song."""
         if self.measures and timing is None:
             raise UsageError(
                 f"style {self.text} changes by measures, and captured motion has none; name a style without 'measures'"

@@ -142,7 +142,7 @@ def _check(given: _Upright, body: Skeleton, poses: Poses) -> None:
 
 
 def _without_reference(captured: CapturedMotion, joints: Mapping[str, int]) -> CapturedMotion:
-    """The motion without the rest pose that some converters put before it, and from which all joints would jump."""
+    """Return the motion without the rest pose that some converters put first, and from which all joints would jump."""
     first = first_frame(_paths(captured, joints))
     if not first or len(captured.times) - first < 2:
         return captured
@@ -323,7 +323,8 @@ def _feet(body: Skeleton, given: _Upright, world: Array) -> _Feet:
 
 
 def _floor(low: Array, standing: NDArray[np.bool_]) -> Array:
-    """The height (f,) of the floor under the dancer: feet (f, 2) at rest stand on it; between rests it is interpolated.
+    """Return the height (f,) of the floor under the dancer: feet (f, 2) at rest stand on it; between rests it is
+    interpolated.
 
     Captured floors are rarely level: a foot at rest may lie centimetres higher at the other end of the room.
     """

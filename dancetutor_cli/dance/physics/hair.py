@@ -132,7 +132,7 @@ def _lengthened(p: Vec, above: Vec, size: float) -> Vec:
 
 @inner_kernel
 def _no_further(a: Vec, b: Vec, most: float) -> Vec:
-    """Return unit vector b, limited to `most` radians from unit vector a."""
+    """Return the unit vector b, limited to `most` radians from unit vector a."""
     cosine = dot(a, b)
     if cosine >= math.cos(most):
         return b

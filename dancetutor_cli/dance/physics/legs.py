@@ -57,7 +57,8 @@ def soft_legs(
 
 
 def risen(skeleton: Skeleton, poses: Poses, feet: AnkleTracks, plants: Plants, times: Array) -> Array:
-    """The root (f, 3), so high that ankles of feet with held heels are within their limits, as far as legs reach.
+    """Return the root (f, 3), so high that ankles of feet with held heels are within their limits, as far as legs
+    reach.
 
     On a body with long thighs and short shanks, a captured squat would bend the ankles too far.
     """

@@ -200,7 +200,7 @@ class Sole:
         return out, turn
 
     def _raised(self, ankle: Array, heading: Array) -> Array:
-        """The pitch (n,) with which the ankle is nearest to its goal `ankle` (n, 3), as seen from the held ball."""
+        """Return the pitch (n,) that brings the ankle nearest to `ankle` (n, 3), as seen from the held ball."""
         ahead = ankle[:, 0] * np.sin(heading) + ankle[:, 2] * np.cos(heading)
         rest = np.arctan2(-self.ball[1], self.ball[2])
         return np.asarray(np.clip(np.arctan2(ankle[:, 1], -ahead) - rest, 0.0, STEEPEST))

@@ -285,7 +285,8 @@ def missed_by_trip(motion: Motion, second: float, side: int) -> list[Contact]:
 
 
 def staggering(motion: Motion, feet: AnkleTracks, second: float, gave: Array) -> AnkleTracks:
-    """The feet of a dancer who cannot stay in place: both step after the body, one after the other, and come back.
+    """Return the feet of a dancer who cannot stay in place: both step after the body, one after the other, and come
+    back.
 
     gave : (3,) metres of the body from its place in the motion
     """
@@ -321,7 +322,7 @@ def _hop(share: Array) -> Array:
 
 
 def without(motion: Motion, missed: Sequence[Contact], note: str, at: float) -> Motion:
-    """The motion without the missed contacts, except those already held at second `at`, with a note that lists them."""
+    """Return the motion without the missed contacts, but with those held at second `at`; a note lists the missed."""
     started = {id(c) for c in missed if c.start < at}
     gone = {id(c) for c in missed} - started
     kept = tuple(c for c in motion.contacts if id(c) not in gone)
@@ -360,7 +361,8 @@ def disturbed(motion: Motion, pushes: Sequence[Push], stumbles: Sequence[Stumble
 def recovered(
     motion: Motion, feet: AnkleTracks, root: Array, pushes: Sequence[Push]
 ) -> tuple[Motion, AnkleTracks, list[list[Contact]]]:
-    """The motion without the notes that pushes make the dancer miss, her feet, and the notes missed by each push.
+    """Return the motion without the notes that pushes make the dancer miss, her feet, and the notes missed by each
+    push.
 
     root : (f, 3) of the ragdoll
     """

@@ -97,7 +97,7 @@ def _places(skeleton: Skeleton, bone: Bone, style: Style) -> list[tuple[str, Arr
 def place_points(
     skeleton: Skeleton, bones: tuple[Bone, ...], points: tuple[Point, ...], rotations: Array, root: Array
 ) -> Array:
-    """World positions (f, p, 3) of the points of a skeleton posed by local rotations (f, j, 4) and root (f, 3)."""
+    """Return world positions (f, p, 3) of points of a pose: local rotations (f, j, 4) and root (f, 3)."""
     positions, world = world_transforms(skeleton, rotations, root)
     joints = [bones[p.bone].joint for p in points]
     return np.asarray(positions[:, joints] + quat.rotate(world[:, joints], np.array([p.offset for p in points])))
@@ -170,7 +170,7 @@ class Bone:
 
 
 def bones_of(skeleton: Skeleton) -> tuple[Bone, ...]:
-    """The bodies of the dancer's ragdoll, parents before children; toes, eyes, lids, jaw and braid have no body."""
+    """Return the bodies of the ragdoll, parents before children; toes, eyes, lids, jaw and braid have none."""
     rest = skeleton.rest
     out: list[Bone] = []
     names: list[str] = []

@@ -165,7 +165,8 @@ def pin_hands(motion: Motion, poses: Poses, feet: AnkleTracks) -> Poses:
 
 
 def _closed(skeleton: Skeleton, poses: Poses, given: tuple[Array, Array], share: Array) -> tuple[Array, Array]:
-    """Rotations with both arms closed; and 1 for frames (f,) in which an arm is too short or past its limits, else 0.
+    """Return rotations with both arms closed; and 1 for frames (f,) in which an arm is too short or past its limits,
+    else 0.
 
     given : places and turns of all joints of the input; share : (f, 2) how far hands hold the bar
     """

@@ -56,7 +56,7 @@ def follow(values: Array, rate: float, follower: Follower) -> Array:
 
 
 def follow_all(skeleton: Skeleton, rotations: Array, root: Array, style: Style) -> tuple[Array, Array]:
-    """Targets (f, j, 4), (f, 3) of the ragdoll: the input at the style's update rate behind the style's followers."""
+    """Return the ragdoll's targets (f, j, 4), (f, 3): the input at the update rate behind the style's followers."""
     rate, given = style.body.update_rate, rotations
     rotations = given.copy()
     for part in _TRUNK:

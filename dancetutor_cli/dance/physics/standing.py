@@ -254,7 +254,7 @@ JUMP_ZERO, ALIKE = 2.0, np.radians(0.5)  # of a pose that is the file's zero pos
 
 
 def first_frame(given: JointPaths) -> int:
-    """The frame in which the motion begins, after a rest pose of one or more still frames from which joints jump."""
+    """Return the frame in which the motion begins, after a rest pose of still frames from which joints jump."""
     names = sorted(given.places)
     places = np.stack([given.places[name] for name in names], axis=1)
     leg = sum(float(np.linalg.norm(given.places[f"l_{a}"][0] - given.places[f"l_{b}"][0])) for a, b in _LEGS)

@@ -53,7 +53,7 @@ def contact_figures(motion: Motion) -> tuple[tuple[Figure, ...], Array]:
 
 
 def soles_inside(motion: Motion) -> Array:
-    """How far (k,) the middle of the sole is inside its panel when a whole foot lands, metres; below 0 outside."""
+    """Return how far (k,) the middle of a whole foot's sole lands inside its panel, metres; below 0 outside."""
     whole = [c for c in motion.contacts if c.limb < Limb.LEFT_HAND and c.part == Part.WHOLE]
     if not whole:
         return np.zeros(0)
@@ -326,7 +326,7 @@ def stands(motion: Motion) -> list[StandingSpan]:
 
 
 def slide_figures(motion: Motion, words: str, goals: bool) -> tuple[Figure, ...]:
-    """The median and worst slide in millimetres. words : added to the names; goals : whether the figures have goals"""
+    """Return the median and worst slide, millimetres. words : added to names; goals : whether figures have goals"""
     slides = [1000.0 * one.slide for one in stands(motion)]
     median, worst = (float(np.median(slides)), max(slides)) if slides else (float("nan"), float("nan"))
     return (

@@ -105,7 +105,7 @@ def _rays(arms: Array) -> Array:
 
 
 def dumbbells(skeleton: Skeleton, body: Body) -> tuple[Array, Array]:
-    """The body as pairs of point masses that turn with its parts: places (f, 2 m, 3), masses (2 m,) with sum 1."""
+    """Return the body as pairs of point masses that turn with its parts: places (f, 2 m, 3), masses (2 m,), sum 1."""
     joints, masses, offsets = mass_points(skeleton)
     size = np.linalg.norm(offsets, axis=1, keepdims=True)
     half = np.where(size > 0.03, GYRATION * 2.0 * offsets, [WIDE, 0.0, 0.0])
@@ -149,7 +149,7 @@ def flight_figures(body: Body) -> tuple[Figure, ...]:
 
 
 def ground_force(body: Body) -> Array:
-    """The vertical force, body weights, at frames on the ground whose neighbours are too, from the centre of mass."""
+    """Return the vertical force, body weights, from the centre of mass, at frames on the ground between such frames."""
     stands = np.asarray(body.standing.any(axis=1))
     inner = stands[1:-1] & stands[:-2] & stands[2:]
     acceleration = np.diff(body.mass[:, 1], n=2) * body.rate**2
@@ -189,7 +189,7 @@ def zero_moment_point(body: Body, cut: float | None = None) -> Array:
 
 
 def zmp_margin(body: Body, cut: float | None = None) -> Array:
-    """The distance (k,) of the zero-moment point outside the hull of standing sole points, for frames on the ground."""
+    """Return the distance (k,) of the zero-moment point outside the hull of the soles, at frames on the ground."""
     zmp = zero_moment_point(body, cut)
     soles = body.soles[1:-1].reshape(len(zmp), -1, 3)
     down = soles[..., 1] <= GROUND + 0.004

@@ -158,7 +158,8 @@ def skating_ratio(motion: Motion) -> float:
 
 
 def physical_foot_contact(motion: Motion) -> float:
-    """The mean of speed of one foot x speed of the other x acceleration of the root, 30 frames a second, times 10,000.
+    """Return the mean of speed of one foot x speed of the other x acceleration of the root, 30 frames a second, times
+    10,000.
 
     Speeds are metres per frame, of the slower of ankle and toes. The acceleration counts upward and aside, in parts of
     its largest value.
@@ -178,7 +179,7 @@ def physical_foot_contact(motion: Motion) -> float:
 
 
 def penetration(body: Body) -> float:
-    """The mean depth in metres of the lowest point below the ground, over all frames; less than 5 mm counts as 0."""
+    """Return the mean depth, metres, of the lowest point below the ground over all frames; below 5 mm counts as 0."""
     depth = -body.soles[..., 1].min(axis=(1, 2))
     return float(np.where(depth > TOLERANCE, depth, 0.0).mean())
 

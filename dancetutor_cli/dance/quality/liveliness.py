@@ -120,7 +120,7 @@ def _band(x: Array, rate: float) -> Array:
 
 
 def landings(body: Body, skeleton: Skeleton, stepping: NDArray[np.bool_]) -> tuple[Array, Array]:
-    """How far the knee bends after each landing of a foot during the steps, and how far the foot rolls, degrees."""
+    """Return how far, degrees, the knee bends after each landing during the steps, and how far the foot rolls."""
     knees, gives, rolls = 180.0 - knee_angles(body, skeleton), [], []
     first, last = (int(i) for i in (np.argmax(stepping), len(stepping) - np.argmax(stepping[::-1])))
     before, rests, within, back, on = (round(s * body.rate) for s in (BEFORE, RESTS, GIVES, *ROLL))
@@ -141,7 +141,7 @@ def landings(body: Body, skeleton: Skeleton, stepping: NDArray[np.bool_]) -> tup
 
 
 def hand_turn(motion: Motion) -> float:
-    """The fastest turn of a hand on its forearm, degrees per second, by the times of the keys, which are uneven."""
+    """Return the fastest turn of a hand on its forearm, degrees per second; the times of keys are uneven."""
     steps, fastest = np.diff(motion.times), 0.0
     apart = steps > 1e-6
     for side in "lr":

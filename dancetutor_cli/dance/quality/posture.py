@@ -123,7 +123,7 @@ def limb_depths(body: Body, skeleton: Skeleton) -> dict[str, Array]:
 
 
 def _limb(body: Body, skeleton: Skeleton, side: str, chain: tuple[tuple[str, float], ...]) -> list[Capsule]:
-    """The capsules of a limb from its root outward; the last capsule of an arm reaches to the end of the hand."""
+    """Return the capsules of a limb from its root outward; the last one of an arm reaches to the hand's end."""
     places = [body.joints[:, skeleton.index(f"{side}_{name}")] for name, _ in chain]
     radii = [radius for _, radius in chain]
     if chain is ARM:

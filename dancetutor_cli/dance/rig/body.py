@@ -105,7 +105,7 @@ PARTS = (
 
 
 def mass_points(skeleton: Skeleton) -> tuple[NDArray[np.int64], Array, Array]:
-    """The body as point masses fixed to joints.
+    """Return the body as point masses fixed to joints.
 
     Returns
     -------
@@ -165,7 +165,7 @@ class BodyPoint:
 
 
 def sole_points(skeleton: Skeleton) -> tuple[tuple[BodyPoint, ...], tuple[BodyPoint, ...]]:
-    """The sole points of the left and the right foot, in the order of `SOLE_NAMES`."""
+    """Return the sole points of the left and the right foot, in the order of `SOLE_NAMES`."""
     rest = skeleton.rest
     feet = []
     for side, mirror in zip(SIDES, (1.0, -1.0), strict=True):
@@ -179,7 +179,7 @@ def sole_points(skeleton: Skeleton) -> tuple[tuple[BodyPoint, ...], tuple[BodyPo
 
 
 def palm_points(skeleton: Skeleton) -> tuple[BodyPoint, BodyPoint]:
-    """The middle of the left and the right palm, on the skin."""
+    """Return the middle of the left and the right palm, on the skin."""
     rest = skeleton.rest
     out = []
     for side in SIDES:
@@ -191,25 +191,25 @@ def palm_points(skeleton: Skeleton) -> tuple[BodyPoint, BodyPoint]:
 
 
 def hand_direction(skeleton: Skeleton, side: str) -> Array:
-    """Unit vector from the wrist to the fingers in the rest pose: the line of the upper arm."""
+    """Return the unit vector from the wrist to the fingers in the rest pose: the line of the upper arm."""
     d = skeleton.offsets[skeleton.index(f"{side}_elbow")]
     return np.asarray(d / np.linalg.norm(d))
 
 
 def palm_normal(skeleton: Skeleton, side: str) -> Array:
-    """Unit vector out of the palm in the rest pose: towards the thigh, square to the hand."""
+    """Return the unit vector out of the palm in the rest pose: towards the thigh, square to the hand."""
     x, y, _ = hand_direction(skeleton, side)
     normal = np.array([y, -x, 0.0])
     return normal if normal[1] < 0 else -normal
 
 
 def points_in_world(skeleton: Skeleton, points: tuple[BodyPoint, ...], rotations: Array, root: Array) -> Array:
-    """World positions (f, p, 3) of body points; rotations (f, j, 4) local, root (f, 3)."""
+    """Return world positions (f, p, 3) of body points; rotations (f, j, 4) local, root (f, 3)."""
     return place(points, *world_transforms(skeleton, rotations, root))
 
 
 def place(points: tuple[BodyPoint, ...], positions: Array, world: Array) -> Array:
-    """World positions (f, p, 3) of body points from the joints' world positions and rotations."""
+    """Return world positions (f, p, 3) of body points from the joints' world positions and rotations."""
     return np.stack([positions[:, p.joint] + quat.rotate(world[:, p.joint], p.offset) for p in points], axis=1)
 
 

@@ -251,7 +251,7 @@ def arm_in_torso(skeleton: Skeleton, joints: Array, side: str) -> Array:
 
 
 def segment_distance(a: Array, b: Array, c: Array, d: Array) -> Array:
-    """The least distance (f,) of segments a-b and c-d, each (f, 3) (Ericson, Real-Time Collision Detection, 5.1.9)."""
+    """Return the least distance (f,) of segments a-b, c-d, (f, 3) (Ericson, Real-Time Collision Detection, 5.1.9)."""
     u, v, w = b - a, d - c, a - c
     uu, vv, uv = np.sum(u * u, axis=1), np.sum(v * v, axis=1), np.sum(u * v, axis=1)
     uw, vw = np.sum(u * w, axis=1), np.sum(v * w, axis=1)

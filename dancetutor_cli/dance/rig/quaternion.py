@@ -27,7 +27,7 @@ def normalize(q: ArrayLike) -> Array:
 
 
 def multiply(a: ArrayLike, b: ArrayLike) -> Array:
-    """The rotation b followed by the rotation a; shapes broadcast."""
+    """Return the rotation b followed by the rotation a; shapes broadcast."""
     a, b = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
     aw, ax, ay, az = (a[..., k] for k in range(4))
     bw, bx, by, bz = (b[..., k] for k in range(4))
@@ -48,7 +48,7 @@ def conjugate(q: ArrayLike) -> Array:
 
 
 def rotate(q: ArrayLike, v: ArrayLike) -> Array:
-    """Vectors v (..., 3) turned by q (..., 4); shapes broadcast."""
+    """Return vectors v (..., 3) turned by q (..., 4); shapes broadcast."""
     q, v = np.asarray(q, dtype=np.float64), np.asarray(v, dtype=np.float64)
     w, x, y, z = (q[..., k] for k in range(4))
     vx, vy, vz = (v[..., k] for k in range(3))

@@ -161,7 +161,7 @@ def excess(skeleton: Skeleton, rotations: Array) -> dict[str, Array]:
 
 
 def beyond(skeleton: Skeleton, name: str, rotations: Array) -> Array:
-    """The degrees (f,) by which one joint with local rotations (f, 4) is past its nearest limit; negative within."""
+    """Return the degrees (f,) by which local rotations (f, 4) of a joint are past a limit; negative within."""
     mirrored = name.startswith("r_")
     limit = LIMITS[name.replace("r_", "l_", 1) if mirrored else name]
     return _past(limit, rotations, _bone(skeleton, skeleton.index(name)), -1.0 if mirrored else 1.0)

@@ -133,7 +133,8 @@ def rotation_zmp_offset(skeleton: Skeleton, positions: Array, world: Array, rate
 
 
 def counter_rotation_zmp(support: Support, turning: Array) -> Array:
-    """The best zero-moment point (n, 2) of the point mass: with `turning` (n, 2) added, it is near the soles' middle.
+    """Return the best zero-moment point (n, 2) of the point mass: with `turning` (n, 2) added, it is near the soles'
+    middle.
 
     It does not go all the way, because the point itself must also stay well within the soles.
     """
@@ -184,7 +185,8 @@ def balanced_path(
     hand: float = 1.0,
     shift: Array | None = None,
 ) -> tuple[Array, bool]:
-    """The path (n, 2) of the centre of mass over the ground, and whether limits were softened (`quadratic.Solution`).
+    """Return the path (n, 2) of the centre of mass over the ground, and whether limits were softened
+    (`quadratic.Solution`).
 
     The body is a cart on a table (Kajita and others 2003): with x the centre of mass over the ground, y its height and
     g gravity the zero-moment point is  z = x - y / (y'' + g) x'' . On nodes k
@@ -256,7 +258,7 @@ class _PathGoals:
 
 
 def _room(feet: Feet, back: float, farthest: float) -> tuple[Array, Array]:
-    """The lowest and highest place (n, 2) of the pelvis that both legs reach; back : from ball to ankle, metres."""
+    """Return the lowest and highest place (n, 2) of the pelvis that both legs reach; back : ball to ankle, metres."""
     ankles = [f.ball[:, [0, 2]] - back * np.column_stack((np.sin(f.yaw), np.cos(f.yaw))) for f in feet]
     return np.maximum(*ankles) - farthest, np.minimum(*ankles) + farthest
 

@@ -62,7 +62,8 @@ def turned_for_hands(presses: Presses, times: Array, hands: HandSettings) -> Arr
 
 
 def leaning_tilt(presses: Presses, course: Course, chest: Array, lean: Array, settings: MotionSettings) -> Array:
-    """The lean of the chest (n, 2), a horizontal direction times an angle: towards each panel that a hand presses.
+    """Return the lean of the chest (n, 2), a horizontal direction times an angle: towards each panel that a hand
+    presses.
 
     chest : (n,) yaw of the chest; lean : (n, 2) the lean where no hand reaches, in the same form
     """
@@ -106,7 +107,8 @@ def crossing_share(grips: tuple[Grip, ...], times: Array, numbers: AcrossSetting
 
 
 def turned_across(torso: Array, yaw: Array, share: Array, numbers: AcrossSettings) -> Array:
-    """How far (n,) the chest turns from a pelvis of yaw (n,), radians; `torso` (n,) is the turn without crossing.
+    """Return how far (n,) the chest turns from a pelvis of yaw (n,), radians; `torso` (n,) is the turn without
+    crossing.
 
     The chest turns until it faces along the rail and a little towards it, as far as a trunk turns.
     """
@@ -204,7 +206,7 @@ def _head(gap: Array, course: Course, settings: MotionSettings) -> Array:
 
 
 def away_from_screen(gap: Array, settings: MotionSettings) -> Array:
-    """How far (n,) the dancer has stopped looking at a screen that is `gap` (n,) radians from her chest, 0 to 1."""
+    """Return how far (n,) the dancer looks away from a screen `gap` (n,) radians from her chest, 0 to 1."""
     first, last = np.radians(settings.look.away_from), np.radians(settings.look.away_to)
     return np.asarray(smooth((np.abs(gap) - first) / (last - first)))
 
@@ -213,7 +215,7 @@ def away_from_screen(gap: Array, settings: MotionSettings) -> Array:
 
 
 def leaning_share(grips: tuple[Grip, ...], times: Array, settings: BarSettings) -> Array:
-    """How much the body leans on the bar (n,), 0 to 1: 1 while hands hold it, also while a hand takes it again."""
+    """Return how much the body leans on the bar (n,), 0 to 1: 1 while hands hold it or take it again."""
     out, rest = np.zeros(len(times)), settings.leave
     spans: list[list[float]] = []
     for grip in grips:

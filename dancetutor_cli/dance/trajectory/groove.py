@@ -19,7 +19,7 @@ from dancetutor_cli.dance.units import Array
 
 @lru_cache(maxsize=8)
 def heard_beats(beats: tuple[float, ...], shortest: float) -> Array:
-    """The beats (k,) to which the dancer moves, seconds: quick beats only every second one, or fewer.
+    """Return the beats (k,) to which the dancer moves, seconds: quick beats only every second one, or fewer.
 
     Not to be changed.
     """
@@ -31,8 +31,8 @@ def heard_beats(beats: tuple[float, ...], shortest: float) -> Array:
 
 
 def beat_bounce(context: Context, times: Array, tempo: Array, busy: Array) -> Array:
-    """How far (n,) the dancer has given way to the beat, 0 between beats to 1 on each; 0 when feet are quick or hands
-    busy.
+    """Return how far (n,) the dancer has given way to the beat, 0 between beats to 1 on each; 0 when feet are quick or
+    hands busy.
 
     tempo : (n,) as in `height`; busy : (n,) 0 to 1
     """
@@ -50,7 +50,7 @@ def beat_bounce(context: Context, times: Array, tempo: Array, busy: Array) -> Ar
 
 
 def dancing(tempo: Array, busy: Array, layers: LayerSettings) -> Array:
-    """How free (n,) her trunk is to dance to the beat, 0 to 1; arguments as in `beat_bounce`."""
+    """Return how free (n,) her trunk is to dance to the beat, 0 to 1; arguments as in `beat_bounce`."""
     return np.asarray(smooth(1.0 - tempo / layers.beat_fade) * (1.0 - np.clip(busy, 0.0, 1.0)))
 
 
@@ -131,7 +131,7 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
 
 
 def _bob(context: Context, times: Array, tempo: Array) -> Array:
-    """How much lower (n,) she is wished with the beat, metres, on average half of what is left of it.
+    """Return how much lower (n,) she is wished with the beat, metres, on average half of what is left of it.
 
     The calm path of the height leaves 1 / (1 + (2 pi T / beat)^6) of a wish that comes and goes with the beat, T being
     the time constant of `height.height_path`; so the wish goes so much farther, and knees bend no more for it on
@@ -161,7 +161,7 @@ def stepped(plan: Plan, times: Array) -> Array:
 
 
 def leisure(plan: Plan, times: Array, numbers: GrooveSettings) -> Array:
-    """How much time (n,) there is between the steps around even times, 0 to 1."""
+    """Return how much time (n,) there is between the steps around even times, 0 to 1."""
     lands = np.sort([m.land for track in plan.feet for m in track.moves if isinstance(m, Swing)])
     k = np.searchsorted(lands, times)
     gap = np.append(lands, np.inf)[k] - np.append(-np.inf, lands)[k]
@@ -171,8 +171,8 @@ def leisure(plan: Plan, times: Array, numbers: GrooveSettings) -> Array:
 
 
 def stance(plan: Plan, times: Array, context: Context) -> Array:
-    """How far (n,) the weight must be towards the left foot, metres, at even times. If there is time, it goes onto the
-    foot that has landed and stays there until the next one has landed; not near jumps, nor at the bar.
+    """Return how far (n,) the weight must be towards the left foot, metres, at even times. If there is time, it goes
+    onto the foot that has landed and stays there until the next one has landed; not near jumps, nor at the bar.
     """
     numbers = context.settings.groove
     if context.bar is not None:
@@ -193,7 +193,7 @@ def _to(move: Move) -> bool:
 
 
 def _grounded(plan: Plan, times: Array, around: float) -> Array:
-    """How far away (n,) jumps are, 0 to 1, wholly from `around` seconds on: she goes straight up from both legs."""
+    """Return how far away (n,) jumps are, 0 to 1, 1 from `around` seconds on: she goes up from both legs."""
     out = np.ones(len(times))
     for start, end in plan.flights:
         near = slice(*np.searchsorted(times, (start - around, end + around)).tolist())
@@ -203,7 +203,7 @@ def _grounded(plan: Plan, times: Array, around: float) -> Array:
 
 
 def repeated(plan: Plan, times: Array, settings: MotionSettings) -> Array:
-    """How much (n,) one foot taps again and again in its place, at even times, 0 to 1: in jacks.
+    """Return how much (n,) one foot taps again and again in its place, at even times, 0 to 1: in jacks.
 
     It needs several such steps in a row: one in a stream does not count.
     """
@@ -223,7 +223,8 @@ def repeated(plan: Plan, times: Array, settings: MotionSettings) -> Array:
 
 
 def sway(plan: Plan, times: Array, context: Context) -> Array:
-    """Where (n,) the dancer sways to, about -1 to 1, positive left: to one side on a beat, to the other on the next.
+    """Return where (n,) the dancer sways to, about -1 to 1, positive left: to one side on a beat, to the other on the
+    next.
 
     Some beats are danced farther than others, and sometimes she stays on a side. In the mirror image of a play it is
     the other way round.
@@ -248,7 +249,8 @@ ARMS = 2  # of the seeds: other draws than those of `sway`
 
 
 def carriage(plan: Plan, times: Array, context: Context) -> Array:
-    """How far ahead and up (n, 2) the left and the right hand are carried, about -1 to 1; different in each phrase.
+    """Return how far ahead and up (n, 2) the left and the right hand are carried, about -1 to 1; different in each
+    phrase.
 
     A phrase has as many measures of four beats as last `groove.phrase` at least. A hand is ahead and back in turn,
     never twice as far, and mostly the other one is elsewhere. In the mirror image of a play the hands are exchanged.

@@ -72,7 +72,7 @@ def jump_crouch(plan: Plan, times: Array, jump: JumpSettings) -> Array:
 
 
 def landing_give(plan: Plan, times: Array, body: BodySettings) -> Array:
-    """How far (n,) knees give after steps, metres: deepest a little after a landing, less if the next one is soon."""
+    """Return how far (n,) knees give after steps, metres: most a little after a landing, less if the next is soon."""
     swings = [m for track in plan.feet for m in track.moves if isinstance(m, Swing) and not isinstance(m, Walk | Jump)]
     lands = sorted({m.land for track in plan.feet for m in track.moves})
     out = np.zeros(len(times))
@@ -132,7 +132,8 @@ def jump_swing(plan: Plan, times: Array, jump: JumpSettings) -> Array:
 
 
 def jump_lean(plan: Plan, times: Array, jump: JumpSettings) -> Array:
-    """How far (n, 2) the shoulders lean in the direction of jumps, radians: in proportion to the way (thesis 5.6.2).
+    """Return how far (n, 2) the shoulders lean in the direction of jumps, radians: in proportion to the way (thesis
+    5.6.2).
 
     Both feet of a jump land at once and have one way; a gallop has the way of the foot that lands first.
     """
@@ -280,7 +281,7 @@ def _second(t: Array) -> Array:
 
 
 def _third(t: Array) -> Array:
-    """Coefficients (n - 3, 4) of the third derivative on four neighbouring nodes: 6 times the divided difference."""
+    """Return coefficients (n - 3, 4) of the third derivative on four neighbouring nodes: 6 divided differences."""
     x = np.stack([t[k : len(t) - 3 + k] for k in range(4)], axis=1)
     out = np.empty_like(x)
     for i in range(4):

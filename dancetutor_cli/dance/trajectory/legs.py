@@ -142,7 +142,7 @@ def _taken(foot: FootPath, at: list[int]) -> FootPath:
 
 
 def _more(feet: Feet, hips: Array, most: float, skeleton: Skeleton) -> tuple[int, float]:
-    """The foot whose heel rises farther, and by how much, radians. hips : (2, 3); most : largest pitch of a heel"""
+    """Return the foot whose heel rises farther, and the radians. hips : (2, 3); most : largest pitch of a heel"""
     far = [float(np.linalg.norm(hips[s] - ankle_of(feet[s], skeleton, s)[0])) for s in (0, 1)]
     side = int(far[1] > far[0])
     tried = np.arange(0.0, max(most - float(feet[side].pitch[0]), STEP), STEP)

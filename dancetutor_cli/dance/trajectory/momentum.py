@@ -85,7 +85,8 @@ def least_effort(rate_wanted: Array, effort: Array, rate: float, arms: ArmSettin
 
 
 def lower_momentum(feet: Feet, course: Course, height: Array, skeleton: Skeleton) -> Array:
-    """The momentum (n, 3) about the centre of mass of both legs and the part they carry, m^2/s per mass of the body.
+    """Return the momentum (n, 3) about the centre of mass of both legs and the part they carry, m^2/s per mass of the
+    body.
 
     The legs are straight lines from the hips of an upright body. The middle of the carried part is where the given
     centre of mass requires it.

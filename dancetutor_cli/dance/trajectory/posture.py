@@ -110,7 +110,7 @@ class RoughBake:
 def body_trajectory(
     plan: Plan, times: Array, feet: Feet, context: Context, known: RoughBake | None = None
 ) -> Trajectory:
-    """The body on evenly spaced `times` (n,), feet sampled at the same times; known : None in the first round."""
+    """Return the body on even `times` (n,), with feet sampled there; known : None in the first round."""
     settings = context.settings
     held = leaning_share(plan.grips, times, settings.bar)
     course, softened = _course(plan, times, feet, context, known)
@@ -170,9 +170,9 @@ def body_trajectory(
 
 
 def _pelvic_list(feet: Feet, tempo: Array, rate: float, body: BodySettings) -> Array:
-    """How much lower (n,) the right hip is than the left one, radians: the pelvis sinks on the side of the leg without
-    weight (the pelvic list of Saunders, Inman and Eberhart, *The major determinants in normal and pathological gait*,
-    1953).
+    """Return how much lower (n,) the right hip is than the left one, radians: the pelvis sinks on the side of the leg
+    without weight (the pelvic list of Saunders, Inman and Eberhart, *The major determinants in normal and pathological
+    gait*, 1953).
     """
     bears = feet[0].down.astype(np.float64) - feet[1].down
     over = smooth_path(bears[:, None], np.ones(len(bears)), rate, body.list_time)[:, 0]
@@ -181,20 +181,20 @@ def _pelvic_list(feet: Feet, tempo: Array, rate: float, body: BodySettings) -> A
 
 
 def _straddled(feet: Feet, settings: MotionSettings) -> Array:
-    """How wide (n,) the feet are apart, 0 to 1: from `step.wide` to `step.wide_most`, where hips have no room left."""
+    """Return how wide (n,) the feet are apart, 0 to 1: 1 at `step.wide_most`, where hips have no room left."""
     apart = np.linalg.norm((feet[0].ball - feet[1].ball)[:, ::2], axis=1)
     return smooth((apart - settings.step.wide) / max(settings.step.wide_most - settings.step.wide, 1e-6))
 
 
 def _neck_room(turned: Array, look: LookSettings) -> Array:
-    """How free (n,) the chest is to turn on the hips, 0 to 1: not where the head is turned far from it, radians."""
+    """Return how free (n,) the chest is to turn on the hips, 0 to 1: less where the head is turned far from it."""
     return np.asarray(1.0 - smooth((np.abs(turned) - np.radians(look.neck_easy)) / np.radians(look.neck_room)))
 
 
 def _course(
     plan: Plan, times: Array, feet: Feet, context: Context, known: RoughBake | None
 ) -> tuple[Course, tuple[str, ...]]:
-    """Where the body goes over the ground, and which limits had to be softened."""
+    """Return where the body goes over the ground, and which limits had to be softened."""
     settings = context.settings
     above = np.tile(above_at_rest(context.skeleton), (len(times), 1)) if known is None else known.above
     yaw = pelvis_yaw(plan, times, settings)
@@ -220,7 +220,7 @@ def _course(
 
 
 def _pendulum(times: Array, known: RoughBake | None, above: Array) -> Pendulum:
-    """The inverted pendulum of the body; it stands still as long as the height of its centre of mass is not known."""
+    """Return the body's inverted pendulum; it stands still until the height of the centre of mass is known."""
     offset = above[:, [0, 2]]
     if known is None:
         still = np.full(len(times), STANDING_HEIGHT / GRAVITY)
@@ -258,7 +258,7 @@ class LegGoals:
 
 
 def _height_goals(feet: Feet, course: Course, context: Context, legs: LegGoals) -> HeightGoals:
-    """The wanted and the highest allowed height of the centre of mass."""
+    """Return the wanted and the highest allowed height of the centre of mass."""
     settings, above = context.settings, course.above[:, 1]
     wanted = np.full(len(course.yaw), np.inf)
     highest = np.full(len(course.yaw), np.inf)
