@@ -23,7 +23,8 @@ from dancetutor_cli.commands.shared_options import (
     verbose_option,
 )
 from dancetutor_cli.markers.styles import STRIPPED, STYLES
-from dancetutor_cli.reports.terminal import JoinedWarnings, coloured, safe
+from dancetutor_cli.reports.joined_warnings import JoinedWarnings
+from dancetutor_cli.reports.terminal import coloured, safe
 from dancetutor_cli.run.errors import UsageError, choice
 from dancetutor_cli.run.files import check_folder
 

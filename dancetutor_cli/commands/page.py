@@ -26,7 +26,8 @@ from dancetutor_cli.commands.shared_options import (
     selection_options,
     verbose_option,
 )
-from dancetutor_cli.reports.terminal import JoinedWarnings, failures_table, safe, safe_path
+from dancetutor_cli.reports.joined_warnings import JoinedWarnings
+from dancetutor_cli.reports.terminal import failures_table, safe, safe_path
 from dancetutor_cli.run.errors import DancetutorError, UsageError, plural
 from dancetutor_cli.run.files import check_file, check_folder, make_folder, plain_name, write_atomic
 

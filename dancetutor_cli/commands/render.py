@@ -29,7 +29,8 @@ from dancetutor_cli.commands.shared_options import (
 )
 from dancetutor_cli.film.media.encoder import Encoding, choose
 from dancetutor_cli.film.media.film_formats import FILES, FORMATS, PICTURES, target_of
-from dancetutor_cli.reports.terminal import FilmProgress, safe
+from dancetutor_cli.reports.progress import FilmProgress
+from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import check_file, check_folder, make_folder, one_of, place_of, plain_name
 

@@ -13,7 +13,9 @@ import click
 
 from dancetutor_cli.commands.arguments import LONG, note
 from dancetutor_cli.commands.film_options import RenderOptions, film_request
-from dancetutor_cli.reports.terminal import FilmProgress, JoinedWarnings, failures_table, safe
+from dancetutor_cli.reports.joined_warnings import JoinedWarnings
+from dancetutor_cli.reports.progress import FilmProgress
+from dancetutor_cli.reports.terminal import failures_table, safe
 from dancetutor_cli.run.errors import DancetutorError, FileError, UsageError
 from dancetutor_cli.run.files import check_file, check_folder, encoded, make_folder
 from dancetutor_cli.run.foreign_text import json_without_commands

@@ -2,7 +2,9 @@
 
 analyze_formats               formats of `analyze` by name, and their base class
 tally, moments                the counts of a run and its exit status; places in a song as text
-brief, text_report            text for people: at most a screen, or everything; terminal makes text safe and coloured
+brief, text_report            text for people: at most a screen, or everything
+terminal, joined_warnings     safe and coloured text; the warnings of a run, joined
+progress                      the progress of a film
 data_formats, code_formats    formats for programs; formats for code review
 rule_pages                    the documentation of a rule
 pack, pack_page               a pack as data and lines; a pack as a page

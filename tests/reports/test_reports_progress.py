@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from dancetutor_cli.reports import terminal as module
-from dancetutor_cli.reports.terminal import FilmProgress
+from dancetutor_cli.reports import progress as module
+from dancetutor_cli.reports.progress import FilmProgress
 
 
 def test_time_left_is_reported_only_when_enough_is_drawn(
