@@ -5,6 +5,6 @@
     capture                       a capture beside the result of `retarget`
     document                      one file of data, style and modules, which loads nothing
 
-The page itself is `js/`, `page.css`, `capture.css` and `index.css`. Its words are in `configs/languages`, and
-docs/page.schema.json describes its data.
+The page itself is `js/`, whose modules are listed in `js/README.md`, with `page.css`, `capture.css` and `index.css`.
+Its words are in `configs/languages`, and docs/page.schema.json describes its data.
 """

@@ -227,6 +227,6 @@ def pad_script() -> str:
     )
 
 
-def said(browser: Browser) -> str:
-    """What is said over the picture."""
-    return text(browser, ".said")
+def message(browser: Browser) -> str:
+    """The message over the picture."""
+    return text(browser, ".message")

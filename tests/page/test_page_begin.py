@@ -7,7 +7,7 @@ import wave
 from pathlib import Path
 
 import pytest
-from page_chromium import NOW, Browser, pad_script, said, text
+from page_chromium import NOW, Browser, message, pad_script, text
 
 
 def shown(browser: Browser, selector: str) -> bool:
@@ -46,15 +46,15 @@ def test_four_ways_to_begin(opened: Browser) -> None:
     assert float(opened.run(NOW)) == pytest.approx(0.5, abs=0.02)
     opened.click(".way.waits")
     opened.turn(0.06 + 30)  # the first row waits for whoever plays
-    assert float(opened.run(NOW)) == pytest.approx(2.0, abs=0.02) and said(opened).startswith("waiting for you")
+    assert float(opened.run(NOW)) == pytest.approx(2.0, abs=0.02) and message(opened).startswith("waiting for you")
     assert pressed(opened) == "waits" and shown(opened, ".standing")
     opened.click(".way.step")
     opened.turn(0.06 + 2.5)
     assert pressed(opened) == "step" and float(opened.run(NOW)) == pytest.approx(2.5, abs=0.02)  # nothing waits
     opened.click(".way.coached")
-    assert "coach: not passed yet, begins at 70 %" in said(opened)
+    assert "coach: not passed yet, begins at 70 %" in message(opened)
     opened.click(".way.watch")  # no loop and no coach is left of it
-    assert "coach" not in said(opened) and "loop" not in said(opened) and text(opened, ".rate-text") == "100 %"
+    assert "coach" not in message(opened) and "loop" not in message(opened) and text(opened, ".rate-text") == "100 %"
     assert opened.problems == []
 
 
@@ -88,7 +88,7 @@ def test_a_song_that_is_over_shows_its_result_and_what_to_practise(opened: Brows
     )
     assert opened.run("document.querySelector('.result .main').id") == "again-missed"  # so many were missed
     opened.click("#again-missed")
-    assert not shown(opened, ".result") and said(opened).startswith("coach: ") and "loop measure" in said(opened)
+    assert not shown(opened, ".result") and message(opened).startswith("coach: ") and "loop measure" in message(opened)
     opened.key("x", "KeyX")  # no loop: it would be kept
     opened.click(".way.step")
     for _ in range(4):
@@ -126,15 +126,15 @@ def pressed(browser: Browser) -> str:
 def test_playing_along_stays_in_the_loop_and_its_tile_is_marked(opened: Browser) -> None:
     assert pressed(opened) == "watch"
     opened.run("location.hash = '#m2-3'")
-    opened.wait("document.querySelector('.said').textContent.includes('loop')")
+    opened.wait("document.querySelector('.message').textContent.includes('loop')")
     opened.click(".way.step")
     opened.turn(0.06 + 0.5)  # in the count-in of the loop, four beats before second 4
-    assert pressed(opened) == "step" and said(opened).startswith("loop measures 2 to 3")
+    assert pressed(opened) == "step" and message(opened).startswith("loop measures 2 to 3")
     assert float(opened.run(NOW)) == pytest.approx(2.5, abs=0.02)
     opened.click(".way.coached")
     assert pressed(opened) == "coached"
     opened.click(".way.watch")
-    assert pressed(opened) == "watch" and "loop" not in said(opened) and opened.problems == []
+    assert pressed(opened) == "watch" and "loop" not in message(opened) and opened.problems == []
 
 
 def test_a_mat_plays_pauses_goes_back_and_plays_again(opened: Browser) -> None:
@@ -147,7 +147,7 @@ def test_a_mat_plays_pauses_goes_back_and_plays_again(opened: Browser) -> None:
     opened.turn(1)
     assert text(opened, ".play") == "▶" and float(opened.run(NOW)) == pytest.approx(0.5, abs=0.02)
     opened.run("location.hash = '#m2-3'")
-    opened.wait("document.querySelector('.said').textContent.includes('loop')")
+    opened.wait("document.querySelector('.message').textContent.includes('loop')")
     step(opened, 9)
     opened.turn(0.06 + 3)
     assert float(opened.run(NOW)) == pytest.approx(5, abs=0.05)
@@ -259,7 +259,7 @@ def test_lanes_are_the_mats_own_whatever_the_camera_sees(opened: Browser, page_f
 def test_the_pass_before_stands_in_the_count_in(opened: Browser) -> None:
     opened.run(pad_script())
     opened.run("location.hash = '#m1-1'")
-    opened.wait("document.querySelector('.said').textContent.includes('loop')")
+    opened.wait("document.querySelector('.message').textContent.includes('loop')")
     opened.key("p", "KeyP")
     opened.key(" ", "Space")
     for before, scores in (("", "score 50 %"), ("score 50 %", "score 50 % → 50 %")):  # four of the eight notes are hit

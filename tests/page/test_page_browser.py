@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from dance_requests import solved_one
-from page_chromium import NOW, Browser, pad_script, said, text
+from page_chromium import NOW, Browser, message, pad_script, text
 from page_song import write_song
 from PIL import Image
 
@@ -75,18 +75,18 @@ def test_it_plays_loops_and_seeks(browser: Browser) -> None:
     assert second(browser) == pytest.approx(2.25, abs=0.01)  # the next row is an eighth later
     browser.run("location.hash = '#m1-1.5@2'")
     browser.wait(
-        "document.querySelector('.said').textContent.startsWith('loop measure 1, beat 4 to measure 1, beat 5')"
+        "document.querySelector('.message').textContent.startsWith('loop measure 1, beat 4 to measure 1, beat 5')"
     )
     browser.key("i", "KeyI")  # no count-in: the loop is a second of music, half a second at this speed
     browser.key(" ", "Space")
     browser.turn(0.06 + 0.55)
-    assert "1 done" in said(browser) and second(browser) == pytest.approx(2.1, abs=0.02)
+    assert "1 done" in message(browser) and second(browser) == pytest.approx(2.1, abs=0.02)
 
 
 def test_a_deep_link_names_whole_measures_and_begins_with_the_count_in(browser: Browser, page_file: Path) -> None:
     """Measures 1 to 2, both of them: seconds 2 to 6, after four beats that are counted down in numbers."""
     browser.open(page_file, "#m1-2")
-    assert said(browser).startswith("loop measures 1 to 2,") and second(browser) == pytest.approx(2.0, abs=0.01)
+    assert message(browser).startswith("loop measures 1 to 2,") and second(browser) == pytest.approx(2.0, abs=0.01)
     assert text(browser, ".count") == ""
     browser.key(" ", "Space")
     browser.turn(0.06)
@@ -96,9 +96,9 @@ def test_a_deep_link_names_whole_measures_and_begins_with_the_count_in(browser: 
         browser.turn(0.5)
     assert text(browser, ".count") == "" and second(browser) == pytest.approx(2.0, abs=0.02)
     browser.turn(3.9)
-    assert second(browser) == pytest.approx(5.9, abs=0.02) and "0 done" in said(browser)
+    assert second(browser) == pytest.approx(5.9, abs=0.02) and "0 done" in message(browser)
     browser.turn(0.15)
-    assert "1 done" in said(browser) and text(browser, ".count") == "4"  # and before every pass
+    assert "1 done" in message(browser) and text(browser, ".count") == "4"  # and before every pass
     assert browser.run("location.hash") == "#m1-2"
 
 
@@ -109,10 +109,10 @@ def test_the_end_of_the_ramp_brings_the_chosen_speed_back(browser: Browser, page
     browser.key(" ", "Space")
     browser.turn(0.06 + 2.6)  # a pass of two seconds at 80 %
     assert browser.run("document.querySelector('.rate').value") == "0.85"
-    assert text(browser, ".rate-text") == "85 %" and "ramp: speed 80 % → 85 %" in said(browser)
+    assert text(browser, ".rate-text") == "85 %" and "ramp: speed 80 % → 85 %" in message(browser)
     assert browser.run("location.hash") == "#m1-1@0.8"
     browser.key("r", "KeyR")
-    assert text(browser, ".rate-text") == "80 %" and "ramp" not in said(browser)
+    assert text(browser, ".rate-text") == "80 %" and "ramp" not in message(browser)
 
 
 def test_the_strip_seeks_and_makes_loops(browser: Browser) -> None:
@@ -127,7 +127,7 @@ def test_the_strip_seeks_and_makes_loops(browser: Browser) -> None:
         browser.mouse("mouseMoved", x + 0.1 * k * w, y + h / 2)
     browser.mouse("mouseReleased", x + 0.7 * w, y + h / 2)
     browser.drawn()
-    assert re.match(r"loop measures? \d+( to \d+)?, 0", said(browser))  # whole ones, as they are named
+    assert re.match(r"loop measures? \d+( to \d+)?, 0", message(browser))  # whole ones, as they are named
     assert re.fullmatch(r"#m\d+-\d+", browser.run("location.hash"))
 
 
@@ -145,13 +145,13 @@ def test_she_waits_until_each_row_is_pressed(browser: Browser) -> None:
     browser.key("w", "KeyW")
     browser.key(" ", "Space")
     browser.turn(9)
-    assert said(browser).startswith("waiting") and second(browser) == pytest.approx(2.0, abs=0.01)
+    assert message(browser).startswith("waiting") and second(browser) == pytest.approx(2.0, abs=0.01)
     press_pad(browser, 1)  # down: the row is left
     browser.turn(9)
     assert second(browser) == pytest.approx(2.0, abs=0.01) and "1 wrong" in text(browser, ".score")
     press_pad(browser, 0)
     browser.turn(9)
-    assert said(browser).startswith("waiting") and second(browser) == pytest.approx(2.25, abs=0.01)
+    assert message(browser).startswith("waiting") and second(browser) == pytest.approx(2.25, abs=0.01)
     browser.key("f", "KeyF")  # a key is as good: down
     browser.turn(9)
     assert second(browser) == pytest.approx(2.5, abs=0.01)
@@ -163,13 +163,13 @@ def test_a_mat_that_calls_its_arrows_axes_plays_along_and_lets_go_when_it_is_pul
     browser.turn(0.1)
     browser.run("window.pad.axes[0] = -1")
     browser.turn(0.1)
-    assert said(browser) == "Nothing you press or step on is judged yet: choose Play along (p)."
+    assert message(browser) == "Nothing you press or step on is judged yet: choose Play along (p)."
     browser.run("window.pad.axes[0] = 0")
     browser.key("Home")
     browser.key("w", "KeyW")
     browser.key(" ", "Space")
     browser.turn(9)
-    assert said(browser).startswith("waiting") and second(browser) == pytest.approx(2.0, abs=0.01)
+    assert message(browser).startswith("waiting") and second(browser) == pytest.approx(2.0, abs=0.01)
     browser.run("window.pad.axes[1] = 1")  # down: the row is left
     browser.turn(0.1)
     assert "1 wrong" in text(browser, ".score")
@@ -193,7 +193,7 @@ def test_she_waits_in_every_pass_of_a_loop(browser: Browser, page_file: Path) ->
     browser.key("w", "KeyW")
     browser.turn(9)  # to the next pass's beginning
     browser.turn(9)
-    assert said(browser).startswith("waiting") and second(browser) == pytest.approx(2.0, abs=0.01)
+    assert message(browser).startswith("waiting") and second(browser) == pytest.approx(2.0, abs=0.01)
     assert text(browser, ".score").strip() == "0 hit"
 
 
@@ -228,16 +228,16 @@ def test_music_can_be_dropped_and_plays(browser: Browser, page_file: Path) -> No
     assert "No music yet" in text(browser, "#music-state")
     browser.run("window.drop(new Uint8Array(100), 'a.ogg')")
     browser.wait(
-        "document.querySelector('.said').textContent ==="
+        "document.querySelector('.message').textContent ==="
         " 'a.ogg cannot be played as music here. No music yet: the page claps instead.'"
     )
-    assert text(browser, "#music-state") == text(browser, ".said")
+    assert text(browser, "#music-state") == text(browser, ".message")
     browser.run("window.drop(window.wav, 'a.wav')")
     browser.wait("document.querySelector('#music-state').textContent === 'The music is loaded: a.wav.'")
     browser.wait("document.querySelector('.pick').offsetParent === null")
     browser.run("window.drop(new Uint8Array(100), 'b.ogg')")  # no music: the one before stays, and both places say so
-    browser.wait("document.querySelector('.said').textContent.startsWith('b.ogg cannot')")
-    assert text(browser, "#music-state") == text(browser, ".said")
+    browser.wait("document.querySelector('.message').textContent.startsWith('b.ogg cannot')")
+    assert text(browser, "#music-state") == text(browser, ".message")
     assert text(browser, "#music-state").endswith("The music is loaded: a.wav.")
     browser.key(" ", "Space")
     start = second(browser)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -47,3 +48,11 @@ def test_every_module_of_the_page_is_in_it() -> None:
     text = bundle(HERE / "js", "main") + bundle(HERE / "js", "capture")
     for path in (HERE / "js").glob("*.js"):
         assert f"const ${path.stem.replace('-', '_')} =" in text, f"{path.name} is imported by nobody"
+
+
+def test_the_table_of_modules_names_each_once() -> None:
+    table = (HERE / "js/README.md").read_text(encoding="utf-8").partition("| --- |")[2]
+    named = [
+        name for line in table.splitlines() for name in re.findall(r"`(\w+)`", line.partition("|")[2].partition("|")[0])
+    ]
+    assert sorted(named) == sorted(path.stem for path in (HERE / "js").glob("*.js"))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from page_chromium import NOW, Browser, said, text
+from page_chromium import NOW, Browser, message, text
 
 
 def shown(browser: Browser, selector: str) -> bool:
@@ -16,14 +16,14 @@ def test_a_panel_that_is_pressed_while_nothing_plays_says_what_begins(opened: Br
     for way in (".way.step", ".way.waits"):
         opened.click(way)
         opened.key(" ", "Space")
-        assert text(opened, ".play") == "▶" and not said(opened).startswith("Paused")
+        assert text(opened, ".play") == "▶" and not message(opened).startswith("Paused")
         opened.key("d", "KeyD")
-        assert said(opened) == "Paused: press ▶ (space)." and not shown(opened, "#chip-along")
+        assert message(opened) == "Paused: press ▶ (space)." and not shown(opened, "#chip-along")
         opened.turn(6)
-        assert said(opened) == ""
+        assert message(opened) == ""
         opened.key("d", "KeyD")
         opened.key(" ", "Space")
-        assert not said(opened).startswith("Paused") and text(opened, ".play") == "❚❚"
+        assert not message(opened).startswith("Paused") and text(opened, ".play") == "❚❚"
     opened.size(380, 740, touch=True)
     opened.open(page_file)
     opened.click(".way.step")
@@ -32,7 +32,7 @@ def test_a_panel_that_is_pressed_while_nothing_plays_says_what_begins(opened: Br
     for kind, points in (("touchStart", [{"x": x + w / 2, "y": y + h / 2}]), ("touchEnd", [])):
         opened.call("Input.dispatchTouchEvent", type=kind, touchPoints=points)
     opened.drawn()
-    assert said(opened) == "Paused: press ▶." and opened.problems == []
+    assert message(opened) == "Paused: press ▶." and opened.problems == []
 
 
 def test_ten_misses_in_a_row_offer_an_easier_way(opened: Browser) -> None:
@@ -49,17 +49,17 @@ def test_ten_misses_in_a_row_offer_an_easier_way(opened: Browser) -> None:
     assert not shown(opened, "#chip-slow") and shown(opened, "#chip-wait")  # no slower than that is offered
     opened.click("#chip-wait")
     opened.turn(60)
-    assert said(opened).startswith("waiting for you") and not shown(opened, "#chip-wait") and opened.problems == []
+    assert message(opened).startswith("waiting for you") and not shown(opened, "#chip-wait") and opened.problems == []
 
 
 def test_the_coach_takes_the_loop_that_there_is(opened: Browser, page_file: Path) -> None:
     opened.open(page_file, "#m2-3")
     opened.key("w", "KeyW")
     opened.key("c", "KeyC")
-    assert said(opened) == "coach: not passed yet, begins at 70 % speed · loop measures 2 to 3, 0 done"
+    assert message(opened) == "coach: not passed yet, begins at 70 % speed · loop measures 2 to 3, 0 done"
     assert text(opened, ".rate-text") == "70 %" and shown(opened, ".standing")
     opened.turn(0.06 + 20)  # and nothing waits
-    assert not said(opened).startswith("waiting") and opened.problems == []
+    assert not message(opened).startswith("waiting") and opened.problems == []
 
 
 def test_one_foot_that_is_waited_for_in_a_loop(opened: Browser, page_file: Path) -> None:
@@ -68,13 +68,13 @@ def test_one_foot_that_is_waited_for_in_a_loop(opened: Browser, page_file: Path)
     opened.click(".way.waits")
     for key, second in (("d", 2.0), ("k", 3.0), ("d", 4.0)):
         opened.turn(0.06 + 20)
-        assert float(opened.run(NOW)) >= 2.0 and said(opened).startswith("waiting for you"), (key, second)
+        assert float(opened.run(NOW)) >= 2.0 and message(opened).startswith("waiting for you"), (key, second)
         for each in "dfjk":
             opened.key(each, f"Key{each.upper()}")
     for _ in range(20):  # from pass to pass
         opened.turn(0.5)
         for each in "dfjk":
             opened.key(each, f"Key{each.upper()}")
-    assert "loop measures 1 to 2" in said(opened) or said(opened).startswith("waiting")
+    assert "loop measures 1 to 2" in message(opened) or message(opened).startswith("waiting")
     opened.click("#chip-foot")
     assert text(opened, ".play") == "❚❚" and opened.problems == []

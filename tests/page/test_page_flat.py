@@ -37,7 +37,7 @@ def test_presses_are_timed_and_misses_counted(flat: Browser, page_file: Path) ->
     flat.open(page_file)
     flat.run(pad_script())
     flat.run("location.hash = '#m0.5-1.5@0.25'")
-    flat.wait("document.querySelector('.said').textContent.includes('measure 0, beat 2 to measure 1, beat 5')")
+    flat.wait("document.querySelector('.message').textContent.includes('measure 0, beat 2 to measure 1, beat 5')")
     flat.key("i", "KeyI")
     flat.key("p", "KeyP")
     flat.key(" ", "Space")
@@ -67,28 +67,28 @@ def test_arrows_are_panels_while_somebody_plays_along(flat: Browser, page_file: 
     flat.key("ArrowUp")
     assert text(flat, ".rate-text") == "100 %" and "1 hit" in text(flat, ".score") and "1 wrong" in text(flat, ".score")
     flat.key("q", "KeyQ")
-    assert text(flat, ".said") == "That key is not a panel. The panels are D F J K, or ← ↓ ↑ →."
+    assert text(flat, ".message") == "That key is not a panel. The panels are D F J K, or ← ↓ ↑ →."
     flat.key("ArrowRight")
     assert text(flat, ".score").startswith("1 hit")
     flat.turn(60)  # and at the end how it went
-    assert text(flat, ".said").startswith("The song is over, ") and text(flat, ".play") == "▶"
+    assert text(flat, ".message").startswith("The song is over, ") and text(flat, ".play") == "▶"
     flat.key(" ", "Space")  # once more from the start, all notes anew
     flat.turn(0.06)
-    assert text(flat, ".score").strip() == "0 hit" and text(flat, ".said") == ""
+    assert text(flat, ".score").strip() == "0 hit" and text(flat, ".message") == ""
     assert flat.problems == []
 
 
 def test_a_link_that_cannot_be_followed_says_so(flat: Browser, page_file: Path) -> None:
     flat.open(page_file, "#m900-1000")
-    assert text(flat, ".said").startswith("The link begins in measure 900, but the last one is measure ")
+    assert text(flat, ".message").startswith("The link begins in measure 900, but the last one is measure ")
     start = float(flat.run(NOW))
     for link, said in (("#m2-1", "The link ends before it begins"), ("#nonsense", "This link is not understood"),
                        ("#m1-99", "The link goes beyond the last measure")):  # fmt: skip
         flat.run(f"location.hash = '{link}'")
-        flat.wait(f"document.querySelector('.said').textContent.startsWith('{said}')")
+        flat.wait(f"document.querySelector('.message').textContent.startsWith('{said}')")
     assert start < 2 and float(flat.run(NOW)) == pytest.approx(2.0, abs=0.01)
     flat.key(".", "Period")  # whatever is done next takes the place of it
-    assert text(flat, ".said").startswith("loop measures 1 to ")
+    assert text(flat, ".message").startswith("loop measures 1 to ")
     assert flat.problems == []
 
 
@@ -128,7 +128,7 @@ def test_lanes_are_panels_for_a_finger(flat: Browser, page_file: Path) -> None:
     flat.key("w", "KeyW")
     flat.key(" ", "Space")
     flat.turn(9)
-    assert text(flat, ".said").startswith("waiting")
+    assert text(flat, ".message").startswith("waiting")
     x, y, w, h = flat.box(".lanes")
     numbers = 8 + 7 * 2  # room left of the lanes, and a little right of them: as `Highway.measure`
     lane = min(96, (w - numbers - 8) / 4)
@@ -149,4 +149,4 @@ def test_the_other_dancer_is_named_with_the_rows_that_differ(flat: Browser, page
     assert text(flat, ".caption.left") == "these feet" and flat.run(shown) == [True, True]
     assert re.search(r"next best feet \(other feet in [1-9]", text(flat, ".caption.right"))
     flat.key("2", "Digit2")
-    assert flat.run(shown) == [False, False] and "next best" not in text(flat, ".said")
+    assert flat.run(shown) == [False, False] and "next best" not in text(flat, ".message")

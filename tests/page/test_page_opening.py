@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from page_chromium import STILL, Browser, pad_script, said, text
+from page_chromium import STILL, Browser, message, pad_script, text
 from page_song import write_song
 from test_page_results import loop, play
 from test_page_second import load
@@ -43,7 +43,7 @@ def test_the_result_of_the_last_time_leads_to_what_was_missed(opened: Browser, p
     assert told.startswith("Last time, ") and "score 19 %" in told and "most missed: measure 1" in told
     assert not shown(opened, ".standing")
     opened.click("#go-on")
-    assert said(opened).startswith("coach: not passed yet, begins at 70 % speed · loop measure 1,")
+    assert message(opened).startswith("coach: not passed yet, begins at 70 % speed · loop measure 1,")
     assert shown(opened, ".standing") and text(opened, ".play") == "❚❚" and not shown(opened, ".resume")
     opened.size(380, 740, touch=True)
     opened.open(page_file)
@@ -91,11 +91,11 @@ def test_music_in_the_page_that_loads_is_said_and_nothing_claps(flat: Browser, m
     load(flat, music_file, STILL + waits, "document.documentElement?.dataset.ready && Boolean(window.fail)")
     flat.drawn()
     claps = "[...document.querySelectorAll('.bar [aria-pressed=true]')].some(e => e.textContent === 'Claps')"
-    assert said(flat) == "Loading the music …" and not shown(flat, ".pick") and not flat.run(claps)
+    assert message(flat) == "Loading the music …" and not shown(flat, ".pick") and not flat.run(claps)
     flat.key(" ", "Space")
-    assert said(flat) == "Loading the music …"  # also while it plays
+    assert message(flat) == "Loading the music …"  # also while it plays
     flat.run("window.fail(new Error('no music')); 1")
-    flat.wait("document.querySelector('.said').textContent.includes('cannot be played')")
+    flat.wait("document.querySelector('.message').textContent.includes('cannot be played')")
     assert shown(flat, ".pick") and flat.run(claps)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from page_chromium import NOW, Browser, pad_script, said, text
+from page_chromium import NOW, Browser, message, pad_script, text
 
 RECORD = (
     "JSON.parse(Object.entries(localStorage).find(([k]) => k.startsWith('dancetutor:practice:song'))?.[1] ?? 'null')"
@@ -20,7 +20,7 @@ CATCH = "URL.createObjectURL = blob => { window.caught = blob; return 'data:,'; 
 def loop(browser: Browser, link: str = "#m1-1") -> None:
     """Loop some measures without a count-in, and play along from its start."""
     browser.run(f"location.hash = '{link}'")
-    browser.wait("document.querySelector('.said').textContent.includes('loop')")
+    browser.wait("document.querySelector('.message').textContent.includes('loop')")
     browser.key("i", "KeyI")
     browser.run(pad_script())
     browser.key("p", "KeyP")
@@ -56,11 +56,11 @@ def load_file(browser: Browser, content: str, name: str = "x.json") -> str:
     browser.run(
         "(async () => { const data = new DataTransfer();"
         f"data.items.add(new File([{content}], {json.dumps(name)}));"
-        "const input = document.querySelector('#record-file'); document.querySelector('#record-said').textContent = '';"
+        "const input = document.querySelector('#record-file'); document.querySelector('#record-message').textContent = '';"
         "input.files = data.files; input.dispatchEvent(new Event('change')); })()"
     )
-    browser.wait("document.querySelector('#record-said').textContent !== ''")
-    return text(browser, "#record-said")
+    browser.wait("document.querySelector('#record-message').textContent !== ''")
+    return text(browser, "#record-message")
 
 
 STEPS = "dfkfdkjk"  # of measure 1: 1000 0100 0001 0100 1000 0001 0010 0001
@@ -92,7 +92,7 @@ def test_a_pass_is_kept_by_foot_row_and_day_and_stays(opened: Browser, page_file
     opened.open(page_file)
     assert "Today: 8 notes19 %scoreof the notes: 38 % pressed, 0 % on time" in results(opened)
     opened.click(".missed")
-    assert said(opened).startswith("coach: not passed yet, begins at 70 % speed · loop measure 1,")
+    assert message(opened).startswith("coach: not passed yet, begins at 70 % speed · loop measure 1,")
     assert opened.problems == []
 
 
@@ -157,7 +157,7 @@ def test_loops_are_kept_by_name_and_forgotten(opened: Browser, page_file: Path) 
     assert text(opened, ".kept strong") == f"k {HOSTILE}" and opened.run("window.hacked") is None
     assert opened.run("document.querySelector('.kept img')") is None
     opened.click(".kept .card")
-    assert said(opened).startswith("loop measures 2 to 3") and text(opened, ".rate-text") == "75 %"
+    assert message(opened).startswith("loop measures 2 to 3") and text(opened, ".rate-text") == "75 %"
     opened.click(".kept .sign")
     assert opened.run("document.querySelector('.kept')") is None
     opened.open(page_file)
@@ -254,16 +254,16 @@ def test_the_coach_loops_what_was_missed_and_raises_the_speed(opened: Browser) -
     opened.key("x", "KeyX")
     opened.key("-", "Minus")
     opened.key("c", "KeyC")
-    assert "coach: not passed yet, begins at 70 %" in said(opened) and "loop measure 1" in said(opened)
+    assert "coach: not passed yet, begins at 70 %" in message(opened) and "loop measure 1" in message(opened)
     opened.turn(0.06)
     opened.turn(0.9)  # at 70 % a pass is 2.86 s: nobody presses anything in the first
     opened.turn(2.0)
-    assert "begins at 70 %" in said(opened) and text(opened, ".rate-text") == "70 %"
+    assert "begins at 70 %" in message(opened) and text(opened, ".rate-text") == "70 %"
     for number, column in enumerate((0, 1, 3, 1)):
         opened.turn(0.25 / 0.7 if number else 0.0)
         press(opened, column)
     opened.turn(1.9)
-    assert "coach: score 50 %, 95 % passes; speed now 65 %" in said(opened) and text(opened, ".rate-text") == "65 %"
+    assert "coach: score 50 %, 95 % passes; speed now 65 %" in message(opened) and text(opened, ".rate-text") == "65 %"
     assert opened.run("document.querySelector('.way.coached').ariaPressed") == "true"
     opened.key("c", "KeyC")
     assert text(opened, ".rate-text") == "95 %"  # that was chosen before
@@ -273,7 +273,7 @@ def test_the_coach_loops_what_was_missed_and_raises_the_speed(opened: Browser) -
 
 def test_the_coach_has_passages_where_nothing_was_missed(opened: Browser) -> None:
     opened.key("c", "KeyC")
-    assert "coach: not passed yet, begins at 70 %" in said(opened)
+    assert "coach: not passed yet, begins at 70 %" in message(opened)
     assert opened.run("document.querySelector('.strip').getAttribute('aria-valuenow')") is not None
 
 

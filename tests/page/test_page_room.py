@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from page_chromium import Browser, said, text
+from page_chromium import Browser, message, text
 
 
 def box(browser: Browser, selector: str) -> list[float]:
@@ -70,13 +70,13 @@ def test_a_phones_messages_take_no_room_when_there_are_none(opened: Browser, pag
     opened.open(page_file)
     opened.click(".way.step")
     top = box(opened, ".picture")[1]
-    assert said(opened) == "" and top <= box(opened, "header")[3] + 1
+    assert message(opened) == "" and top <= box(opened, "header")[3] + 1
     opened.click(".play")
     opened.key("d", "KeyD")
-    assert said(opened).startswith("Paused") and box(opened, ".said")[1] >= box(opened, "header")[3]
+    assert message(opened).startswith("Paused") and box(opened, ".message")[1] >= box(opened, "header")[3]
     assert box(opened, ".picture")[1] == top  # it lies on the picture for a moment
     opened.open(page_file, "#m1-2")
-    assert said(opened).startswith("loop") and box(opened, ".said")[3] <= box(opened, ".picture")[1]
+    assert message(opened).startswith("loop") and box(opened, ".message")[3] <= box(opened, ".picture")[1]
     assert opened.problems == []
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from page_chromium import Browser, said, text
+from page_chromium import Browser, message, text
 
 pytestmark = pytest.mark.usefixtures("fresh")
 
@@ -43,13 +43,15 @@ def test_a_phone_shows_all_of_it_without_scrolling(browser: Browser, page_file: 
     assert browser.run(f"{buttons}.filter(b => b.getBoundingClientRect().height < 44).map(b => b.textContent)") == []
     browser.click(".card")  # loops a passage, where the picture is in sight
     higher = boxes(browser, ".picture")[0]  # the panel is folded away: who plays looks at the picture
-    assert higher[3] > stage[3] + 150 and said(browser).startswith("loop measure")
+    assert higher[3] > stage[3] + 150 and message(browser).startswith("loop measure")
     browser.key("p", "KeyP")
-    ((left, top, right, bottom),) = boxes(browser, ".said")  # above the picture, whole, and clear of her
+    ((left, top, right, bottom),) = boxes(browser, ".message")  # above the picture, whole, and clear of her
     lane = browser.run("document.querySelector('.lanes').clientWidth") - 22  # the numbers of measures are left of them
     assert lane / 4 >= 44  # wide enough for fingers
-    assert said(browser).startswith("loop measure") and left >= 0 and top >= 0 and bottom <= stage[1] and right <= 380
-    assert browser.run("(e => e.scrollHeight <= e.clientHeight + 1)(document.querySelector('.said'))")
+    assert (
+        message(browser).startswith("loop measure") and left >= 0 and top >= 0 and bottom <= stage[1] and right <= 380
+    )
+    assert browser.run("(e => e.scrollHeight <= e.clientHeight + 1)(document.querySelector('.message'))")
     browser.click(".more")  # all controls, and still a picture
     assert boxes(browser, ".picture")[0][3] - stage[1] > 200
     browser.click("#tab-findings")  # a tab that is tapped closes them and opens

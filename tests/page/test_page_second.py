@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
-from page_chromium import NOW, STILL, Browser, said, text
+from page_chromium import NOW, STILL, Browser, message, text
 from page_song import SONG
 from test_page_document import unpacked
 
@@ -177,10 +177,10 @@ def test_a_finger_on_the_lanes_is_told_that_nothing_is_judged_yet(opened: Browse
     for kind, points in (("touchStart", [{"x": xs[0], "y": y}]), ("touchEnd", [])):
         opened.call("Input.dispatchTouchEvent", type=kind, touchPoints=points)
     opened.drawn()
-    assert said(opened).startswith("Nothing you press or step on is judged yet")
+    assert message(opened).startswith("Nothing you press or step on is judged yet")
     assert opened.run("document.querySelector('[aria-selected=true]').id") == "tab-along"
     opened.key("p", "KeyP")
-    assert not said(opened).startswith("Nothing")
+    assert not message(opened).startswith("Nothing")
 
 
 def test_on_a_phone_lanes_are_called_by_their_arrows(opened: Browser, page_file: Path) -> None:
@@ -198,7 +198,7 @@ def test_on_a_phone_lanes_are_called_by_their_arrows(opened: Browser, page_file:
 def test_going_out_of_a_loop_ends_it(opened: Browser, page_file: Path) -> None:
     opened.open(page_file, "#m1-1")
     opened.key("End")
-    assert said(opened) == "You left the loop of measure 1: it is over." and opened.run("location.hash") == ""
+    assert message(opened) == "You left the loop of measure 1: it is over." and opened.run("location.hash") == ""
     at = float(opened.run(NOW))
     opened.key(" ", "Space")
     opened.turn(1.06)
@@ -207,27 +207,27 @@ def test_going_out_of_a_loop_ends_it(opened: Browser, page_file: Path) -> None:
 
 def test_the_ramp_says_why_it_does_nothing(opened: Browser, page_file: Path) -> None:
     opened.key("r", "KeyR")
-    assert said(opened) == "The ramp raises the speed of a loop: make one first."
+    assert message(opened) == "The ramp raises the speed of a loop: make one first."
     opened.open(page_file, "#m1-1")
-    assert "ramp: 100 % speed, the highest" in said(opened)
+    assert "ramp: 100 % speed, the highest" in message(opened)
     opened.key("-", "Minus")
-    assert "the highest" not in said(opened)
+    assert "the highest" not in message(opened)
 
 
 def test_the_keys_are_said_for_a_while(opened: Browser) -> None:
     opened.key("p", "KeyP")
     opened.key("q", "KeyQ")
-    assert said(opened).startswith("That key is not a panel.")
+    assert message(opened).startswith("That key is not a panel.")
     opened.turn(6)
-    assert not said(opened).startswith("That key")
+    assert not message(opened).startswith("That key")
 
 
 def test_links_of_nothing_and_of_endless_numbers_are_refused(opened: Browser, page_file: Path) -> None:
     opened.open(page_file, "#m0.001-0.002")
-    assert said(opened).startswith("The loop in this link is too short")
+    assert message(opened).startswith("The loop in this link is too short")
     for link in (f"#m{'9' * 400}", f"#m1-{'9' * 400}", f"#m1@{'9' * 400}", f"#m0.{'1' * 400}"):
         opened.open(page_file, link)
-        assert said(opened).startswith("This link is not understood") and len(said(opened)) < 200
+        assert message(opened).startswith("This link is not understood") and len(message(opened)) < 200
         assert text(opened, ".rate-text") == "100 %"
     assert opened.problems == []
 

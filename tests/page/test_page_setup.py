@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from page_chromium import NOW, Browser, pad_script, said, text
+from page_chromium import NOW, Browser, message, pad_script, text
 
 KEYS = "[...document.querySelectorAll('.keys > span')].map(e => [...e.querySelectorAll('kbd')].map(k => k.textContent))"
 STORED = "JSON.parse(localStorage.dancetutor ?? '{}')"
@@ -21,12 +21,12 @@ def test_a_panels_key_that_nothing_judges_is_reported(opened: Browser) -> None:
         if before:
             opened.key(before, "Space")
         opened.key("d", "KeyD")
-        assert said(opened) == "Nothing you press or step on is judged yet: choose Play along (p)."
+        assert message(opened) == "Nothing you press or step on is judged yet: choose Play along (p)."
         opened.turn(6)
-        assert not said(opened).startswith("Nothing") and not shown(opened, "#chip-along")
+        assert not message(opened).startswith("Nothing") and not shown(opened, "#chip-along")
     opened.key("k", "KeyK")
     opened.click("#chip-along")
-    assert not said(opened).startswith("Nothing") and not shown(opened, "#chip-along")
+    assert not message(opened).startswith("Nothing") and not shown(opened, "#chip-along")
     assert shown(opened, ".standing") and opened.problems == []
 
 
@@ -38,7 +38,7 @@ def test_arrow_keys_that_are_panels_do_nothing_else(opened: Browser) -> None:
         state = [text(opened, ".play"), text(opened, ".rate-text"), opened.run(NOW)]
         for arrow in ("ArrowLeft", "ArrowUp", "ArrowRight", "ArrowDown"):
             opened.key(arrow)
-            assert said(opened).startswith("Nothing") and shown(opened, "#chip-along")
+            assert message(opened).startswith("Nothing") and shown(opened, "#chip-along")
             assert [text(opened, ".play"), text(opened, ".rate-text"), opened.run(NOW)] == state
         opened.turn(6)
     opened.key("-", "Minus")
@@ -50,7 +50,7 @@ def test_arrow_keys_that_are_panels_do_nothing_else(opened: Browser) -> None:
     at = opened.run(NOW)
     opened.key("ArrowUp")  # a click on the strip leaves the keys as they are
     opened.key("ArrowLeft")
-    assert text(opened, ".play") == "❚❚" and opened.run(NOW) == at and said(opened).startswith("Nothing")
+    assert text(opened, ".play") == "❚❚" and opened.run(NOW) == at and message(opened).startswith("Nothing")
     opened.run("document.querySelector('.strip').focus()")  # who comes with Tab has a slider
     opened.key("ArrowLeft")
     assert text(opened, ".play") == "▶" and opened.problems == []
@@ -73,7 +73,7 @@ def test_a_finger_on_the_lanes_of_a_song_that_plays_does_not_stop_it(opened: Bro
     for kind, points in (("touchStart", [{"x": x + w / 2, "y": y + h / 2}]), ("touchEnd", [])):
         opened.call("Input.dispatchTouchEvent", type=kind, touchPoints=points)
     opened.drawn()
-    assert said(opened) == "Nothing you press or step on is judged yet: choose Play along."  # there is no key p
+    assert message(opened) == "Nothing you press or step on is judged yet: choose Play along."  # there is no key p
     assert text(opened, ".play") == "❚❚" and shown(opened, "#chip-along") and opened.problems == []
 
 
@@ -87,7 +87,7 @@ def test_keys_and_the_buttons_of_a_mat_are_listed_side_by_side(opened: Browser) 
     assert opened.run(KEYS) == both
     opened.key("p", "KeyP")
     opened.key("q", "KeyQ")
-    assert said(opened) == "That key is not a panel. The panels are D F J K, or ← ↓ ↑ →."
+    assert message(opened) == "That key is not a panel. The panels are D F J K, or ← ↓ ↑ →."
     assert opened.problems == []
 
 
@@ -157,9 +157,9 @@ def test_a_phone_offers_ways_to_begin_below_the_picture(
     assert opened.run("document.querySelector('.along') !== null")
     opened.click("#chip-wait")
     opened.turn(9)
-    assert said(opened).startswith("waiting for you")
+    assert message(opened).startswith("waiting for you")
     opened.click("#chip-along")  # and on
-    assert not said(opened).startswith("waiting for you") and opened.problems == []
+    assert not message(opened).startswith("waiting for you") and opened.problems == []
 
 
 def test_a_phone_ends_a_loop_on_the_picture(opened: Browser, page_file: Path) -> None:
@@ -169,7 +169,7 @@ def test_a_phone_ends_a_loop_on_the_picture(opened: Browser, page_file: Path) ->
     opened.open(page_file, "#m1-2")
     assert shown(opened, "#chip-loop") and not shown(opened, ".bar [title^=No]")
     opened.click("#chip-loop")
-    assert not shown(opened, "#chip-loop") and "loop" not in said(opened) and opened.problems == []
+    assert not shown(opened, "#chip-loop") and "loop" not in message(opened) and opened.problems == []
 
 
 def test_the_rules_of_judging_are_folded(opened: Browser) -> None:

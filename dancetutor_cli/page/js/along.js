@@ -5,7 +5,7 @@ import { el } from "./dom.js";
 import { CONTROLS } from "./input.js";
 import { GOOD, WINDOW } from "./judge.js";
 import { panelName } from "./labels.js";
-import { meanText, scoreText } from "./said.js";
+import { meanText, scoreText } from "./status_text.js";
 import { FEET, HELPS } from "./settings.js";
 
 /** @param {import("./app.js").App} app */

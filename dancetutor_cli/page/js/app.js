@@ -9,7 +9,7 @@ import { Motion } from "./motion.js";
 import { Practice } from "./practice.js";
 import { stretch } from "./places.js";
 import { Redance } from "./redance.js";
-import { passedOf } from "./said.js";
+import { passedOf } from "./status_text.js";
 import { CAMERAS, FEET, FIRST_VIEW, HELPS, loadNotes, loadRecord, loadSettings, saveNotes, saveRecord, saveSettings } from "./settings.js";
 import { Sound, clicksOf } from "./sound.js";
 import { speak } from "./words.js";

@@ -107,7 +107,7 @@ function rowWord(app, cost) {
 }
 
 /** Lines of `feet` in dancetutor.yaml. @param {import("./app.js").App} app */
-export function yamlOf(app) {
+function yamlOf(app) {
   const { words } = app.doc;
   const lines = ["feet:", "  - when:", `      path: ${quoted(words.file)}`, `      steps-type: ${words.steps}`,
     `      difficulty: ${words.difficulty}`, `      meter: ${words.meter}`, "    steps:"];
@@ -116,7 +116,7 @@ export function yamlOf(app) {
 }
 
 /** A pinned comment for each measure with a change: it goes onto the line that opens the measure. @param {import("./app.js").App} app */
-export function commentsOf(app) {
+function commentsOf(app) {
   const measures = [...new Set(app.redance.changedRows().map((row) => Math.floor(row.beat / 4 + 1e-6)))];
   return measures.map((measure) => {
     const rows = app.chart.rows.filter((row) => Math.floor(row.beat / 4 + 1e-6) === measure).map((row) => letters(app, row));
@@ -129,7 +129,7 @@ const PARTS = [null, "heel", "toe"];
 const KINDS = ["", "tap", "lift", "hold", "roll", "roll_tap"];
 
 /** The play in the JSON of `analyze`, for --play: the author's feet, and what the solver would step then. @param {import("./app.js").App} app */
-export function playOf(app) {
+function playOf(app) {
   const { doc, arrays, redance } = app;
   const columns = app.chart.columns;
   const [steps, limbs, parts, ticks, seconds, facing] = ["steps", "limb", "part", "tick", "second", "facing"].map((name) => arrays.get(`row.${name}`));

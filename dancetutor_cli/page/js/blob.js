@@ -26,7 +26,7 @@ export function fromBase64(text) {
  * @param {Uint8Array} data
  * @returns {Promise<Uint8Array>}
  */
-export async function inflate(data) {
+async function inflate(data) {
   const stream = new Blob([/** @type {BlobPart} */ (data)]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }

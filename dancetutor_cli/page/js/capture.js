@@ -4,7 +4,7 @@ import { unpack } from "./blob.js";
 import { CaptureView, colourOf, pointDistances } from "./capture_view.js";
 import { Transport } from "./clock.js";
 import { el, toggle } from "./dom.js";
-import { failed } from "./failed.js";
+import { showStartError } from "./start_error.js";
 import { meshData } from "./gl.js";
 import { Motion } from "./motion.js";
 import { decodeSkins } from "./picture.js";
@@ -162,6 +162,6 @@ function listen(place, view, act) {
 }
 
 main().catch((error) => {
-  if (!document.documentElement.dataset.ready) failed(error);
+  if (!document.documentElement.dataset.ready) showStartError(error);
   console.error(error);
 });

@@ -13,7 +13,7 @@ const NO_MARK = { line: [0, 0, 0, 1], ground: 0, near: -1, strength: 0, pressed:
 /** @typedef {[number, number, number, number]} Box x, y, width and height in pixels, y from the top */
 
 /** Places at even keys, and what they are at any second. */
-export class Track {
+class Track {
   /** @param {import("./blob.js").Numbers} values a row for each number, then keys @param {import("./capture.js").Clock} clock */
   constructor(values, clock) {
     this.keys = clock.keys;

@@ -12,7 +12,7 @@ export class Coach {
     this.app = app;
     this.practice = practice;
     this.on = false;
-    this.said = ""; // what it has to say of the pass before
+    this.message = ""; // what it has to say of the pass before
   }
 
   /** What to practise next: what was missed, else the hardest passage that is not passed at full speed. @returns {Target | null} */
@@ -64,7 +64,7 @@ export class Coach {
     app.transport.setRate(target.rate);
     this.practice.rateBefore = 0;
     this.on = true;
-    this.said = app.t(target.passed ? "coachBegins" : "coachNew", { rate: Math.round(100 * target.rate) });
+    this.message = app.t(target.passed ? "coachBegins" : "coachNew", { rate: Math.round(100 * target.rate) });
     app.tell("coach");
   }
 
@@ -77,7 +77,7 @@ export class Coach {
     if (share < PASSED || this.practice.judge.slowest < FULL) {
       transport.rate = coachRate(transport.rate, share, FULL);
       const now = { percent, rate: Math.round(100 * transport.rate) };
-      this.said = share < PASSED ? app.t("coachFailed", { ...now, pass: 100 * PASSED }) : app.t("coachGoesOn", now);
+      this.message = share < PASSED ? app.t("coachFailed", { ...now, pass: 100 * PASSED }) : app.t("coachGoesOn", now);
       return;
     }
     const target = this.next();
@@ -88,6 +88,6 @@ export class Coach {
     }
     app.setLoop(chart.secondAt(target.from), chart.secondAt(target.to));
     this.take(target);
-    this.said = app.t("coachNext", { percent, rate: Math.round(100 * target.rate) });
+    this.message = app.t("coachNext", { percent, rate: Math.round(100 * target.rate) });
   }
 }

@@ -3,7 +3,7 @@
 import { el } from "./dom.js";
 import { COLOURS } from "./noteart.js";
 import { scoreShare } from "./record.js";
-import { KINDS, sharesText } from "./said.js";
+import { KINDS, sharesText } from "./status_text.js";
 
 const GOOD = 0.9; // a score that is good
 export const FAIR = 0.7; // and one below which the missed rows are worth more than another try

@@ -39,7 +39,7 @@ export function drawGutter(c, seen, { x, receptor, lane, size, wide, ratio }, co
 export const unexplained = (text) => text.replace(/ \([^)]*\)/g, "");
 
 /** Lines of words that fit; null if a word does not. @param {string} text @param {(line: string) => boolean} fits */
-export function wrapped(text, fits) {
+function wrapped(text, fits) {
   /** @type {string[]} */
   const lines = [];
   for (const word of text.split(" ")) {

@@ -9,7 +9,7 @@ export function panelName(t, name) {
 }
 
 /** A move's name. @param {import("./words.js").Translate} t @param {string} name */
-export function moveName(t, name) {
+function moveName(t, name) {
   const label = t(`move-${name}`);
   return label === `move-${name}` ? name.replaceAll("-", " ") : label;
 }

@@ -9,7 +9,7 @@ import { findingsPanel, passagesPanel, settingsPanel } from "./panels.js";
 import { resultsPanel } from "./results.js";
 import { CAMERAS, FIRST_VIEW } from "./settings.js";
 import { resultCard, slimStanding, standing } from "./scores.js";
-import { secondCaption, secondText, countOf, musicText, passedOf, quiet, saidOf } from "./said.js";
+import { secondCaption, secondText, countOf, musicText, passedOf, quiet, statusText } from "./status_text.js";
 
 /**
  * @typedef {object} Canvases what is drawn on; it stays when the words change
@@ -51,7 +51,7 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   const badge = el("span", { class: "badge" }, words.badge);
   badge.style.borderColor = style.difficulty[words.difficulty] ?? "#b9bdc9";
   const about = [words.artist, words.steps, `${words.bpm} BPM`, words.credit && t("stepsBy", { name: words.credit })];
-  const said = el("p", { class: "said", role: "status" });
+  const message = el("p", { class: "message", role: "status" });
   const pick = el("button", { type: "button", class: "pick", onclick: () => document.getElementById("music-file")?.click() },
     "♪ ", el("span", {}, t("pickMusic", { name: words.music || t("pickFile") })));
   pick.setAttribute("aria-label", pick.textContent ?? "");
@@ -69,7 +69,7 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   const main = el("main", { class: app.chart.columns > 5 ? "wide" : "" }, stage, el("section", { class: "notes", "aria-label": t("notes") }, lanes, slimStanding(app), note), chips(app), tabs.side);
   root.replaceChildren(
     el("header", {}, el("div", { class: "song" }, el("h1", {}, words.title), badge, app.doc.pair ? players(style) : null,
-      el("p", { class: "about" }, about.filter(Boolean).join(" · "))), said, pick),
+      el("p", { class: "about" }, about.filter(Boolean).join(" · "))), message, pick),
     main, el("footer", {}, el("div", { class: "place-in-song" }, strip, makeZoom(app, ui)), makeBar(app, ui)));
   if (open) tabs.choose(open);
   app.highway?.speak(t);
@@ -79,12 +79,12 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
       [played, along] = [app.transport.playing, app.practice.along];
       return;
     }
-    said.textContent = said.title = saidOf(app);
-    said.classList.toggle("quiet", quiet(app));
+    message.textContent = message.title = statusText(app);
+    message.classList.toggle("quiet", quiet(app));
     const lasts = app.transport.loop !== null || app.practice.wait; // on a phone that has a place of its own; what passes lies on the picture
-    said.classList.toggle("lasts", lasts);
-    said.classList.toggle("brief", !lasts && (app.notice !== "" || app.practice.stray === "now" || app.practice.over !== null));
-    said.classList.toggle("shown", app.practice.along && app.practice.over !== null && !app.notice); // the card shows it
+    message.classList.toggle("lasts", lasts);
+    message.classList.toggle("brief", !lasts && (app.notice !== "" || app.practice.stray === "now" || app.practice.over !== null));
+    message.classList.toggle("shown", app.practice.along && app.practice.over !== null && !app.notice); // the card shows it
     count.textContent = countOf(app);
     const now = passedOf(app);
     if (passed.textContent !== now) passed.textContent = now;

@@ -4,13 +4,13 @@ import { App } from "./app.js";
 import { fromBase64, unpack } from "./blob.js";
 import { actionsOf, listenToKeys } from "./controls.js";
 import { el } from "./dom.js";
-import { failed } from "./failed.js";
+import { showStartError } from "./start_error.js";
 import { meshData } from "./gl.js";
 import { Highway } from "./highway.js";
 import { layOut } from "./layout.js";
 import { readLink } from "./link.js";
 import { Picture, decodeSkins } from "./picture.js";
-import { musicText } from "./said.js";
+import { musicText } from "./status_text.js";
 import { Timeline } from "./timeline.js";
 
 /** @param {string} id */
@@ -157,6 +157,6 @@ function takeDrops(load) {
 }
 
 main().catch((error) => {
-  if (!document.documentElement.dataset.ready) failed(error);
+  if (!document.documentElement.dataset.ready) showStartError(error);
   console.error(error);
 });

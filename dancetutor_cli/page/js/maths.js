@@ -71,17 +71,3 @@ export function lastUpTo(values, x) {
   }
   return low - 1;
 }
-
-/**
- * Product of 4 x 4 matrices given row by row.
- * @param {ArrayLike<number>} a @param {ArrayLike<number>} b
- */
-export function times(a, b) {
-  const out = new Float32Array(16);
-  for (let r = 0; r < 4; ++r) {
-    for (let c = 0; c < 4; ++c) {
-      out[4 * r + c] = a[4 * r] * b[c] + a[4 * r + 1] * b[4 + c] + a[4 * r + 2] * b[8 + c] + a[4 * r + 3] * b[12 + c];
-    }
-  }
-  return out;
-}

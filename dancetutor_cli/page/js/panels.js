@@ -6,7 +6,7 @@ import { findingFigures, findingWords } from "./labels.js";
 import { placeOf, stretch } from "./places.js";
 import { missedOf, passedFull, scoreShare, whereOf } from "./record.js";
 import { recordPart } from "./results.js";
-import { musicText, scoreText } from "./said.js";
+import { musicText, scoreText } from "./status_text.js";
 
 const TAGS = 2; // of a passage that stand out
 

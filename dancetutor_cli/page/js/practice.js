@@ -5,7 +5,7 @@ import { Judge, ramp } from "./judge.js";
 import { addClean, addOutcomes, addPlay, dayOf, scoreShare, whereOf } from "./record.js";
 import { FEET, HELPS, saveNotes } from "./settings.js";
 
-const STRAY = 5000; // milliseconds that the keys are said
+const STRAY = 5000; // milliseconds for which the keys are shown
 export const SHOWN = 400; // milliseconds in which a verdict above the receptors fades
 const LOST = 10; // notes missed in a row after which something easier is offered
 const MARKS = 24; // presses on the scale of errors
@@ -34,10 +34,10 @@ export class Practice {
     this.errors = [];
     /** @type {import("./judge.js").Tally | null} of a song that has come to its end */
     this.over = null;
-    /** @type {"" | "now" | "said"} whether a key was pressed that is no panel: once, the keys are said then */
+    /** @type {"" | "now" | "shown"} whether a key was pressed that is no panel: once, the keys are shown then */
     this.stray = "";
     this.strayAt = 0; // milliseconds
-    this.idleNotice = ""; // what was said of a press that nothing judged
+    this.idleNotice = ""; // the notice of a press that nothing judged
     /** @type {Feedback | null} */
     this.feedback = null;
     this.run = 0; // notes in a row without a miss or a wrong press
@@ -183,7 +183,7 @@ export class Practice {
     const { transport, sound, settings } = this.app;
     const { rate } = transport;
     if (!transport.playing) return this.idle();
-    if (this.stray === "now") this.stray = "said";
+    if (this.stray === "now") this.stray = "shown";
     if (this.wait) {
       const row = this.judge.open(-Infinity);
       if (!row || row.second - transport.second() > EARLY * rate) return;
@@ -223,7 +223,7 @@ export class Practice {
     return this.feedback;
   }
 
-  /** A panel was pressed that nothing judges, for nobody plays along or nothing plays: that is said. */
+  /** A panel was pressed that nothing judges, for nobody plays along or nothing plays: a notice says so. */
   idle() {
     const { t, input: { keyless } } = this.app;
     this.app.notice = this.along ? t("paused", { keys: keyless ? "▶" : `▶ (${t("space")})` }) : t("padIdle", { key: keyless ? "" : " (p)" });
@@ -232,7 +232,7 @@ export class Practice {
     this.app.tell("along");
   }
 
-  /** Whether that is what is said now. */
+  /** Whether that notice is shown now. */
   get saysIdle() {
     return this.idleNotice !== "" && this.app.notice === this.idleNotice;
   }
@@ -245,15 +245,15 @@ export class Practice {
     this.app.tell("along");
   }
 
-  /** The keys, or that nothing is judged, have been said for long enough. */
+  /** The keys, or that nothing is judged, have been shown for long enough. */
   fade() {
     if ((this.stray !== "now" && !this.saysIdle) || performance.now() - this.strayAt < STRAY) return;
     if (this.saysIdle) this.app.notice = "";
-    else this.stray = "said";
+    else this.stray = "shown";
     this.app.tell("along");
   }
 
-  /** The song is over: how it went is said until somebody goes on. */
+  /** The song is over: how it went is shown until somebody goes on. */
   finish() {
     if (!this.along) return this.app.rewind();
     this.judge.advance(Infinity, this.app.transport.rate);

@@ -4,7 +4,7 @@ import { countsOf } from "./counts.js";
 import { bars, download, el } from "./dom.js";
 import { placeInMeasure, stretch } from "./places.js";
 import { BIN, BINS, LARGEST, dayOf, fromFile, missedOf, missesThrough, scoreShare, streakOf, toFile } from "./record.js";
-import { lateText } from "./said.js";
+import { lateText } from "./status_text.js";
 import { allRecords, loadRecord, saveRecord, takeRecords } from "./settings.js";
 
 const DAYS = 14; // that are shown
@@ -34,19 +34,19 @@ export function resultsPanel(app) {
 export function recordPart(app) {
   const { t, practice } = app;
   const file = el("input", { type: "file", accept: "application/json,.json", id: "record-file", hidden: true, "aria-label": t("recordLoad") });
-  const said = el("p", { class: "hint", role: "status", id: "record-said" });
+  const message = el("p", { class: "hint", role: "status", id: "record-message" });
   const load = el("button", { type: "button", onclick: () => file.click() }, t("recordLoad"));
   const save = el("button", { type: "button", id: "record-save", onclick: () => {
     practice.keep();
     download("dancetutor-practice.json", toFile({ ...allRecords(), [app.id]: app.record }));
-    said.textContent = t("recordSaved", { name: "dancetutor-practice.json" });
+    message.textContent = t("recordSaved", { name: "dancetutor-practice.json" });
   } }, t("recordSave"));
   file.addEventListener("change", async () => {
     const [one] = file.files ?? [];
-    if (one) said.textContent = await takeFile(app, one);
+    if (one) message.textContent = await takeFile(app, one);
     file.value = "";
   });
-  return el("section", {}, el("h3", {}, t("recordTitle")), el("p", { class: "group" }, save, load), file, said, el("p", { class: "hint" }, t("recordHint")));
+  return el("section", {}, el("h3", {}, t("recordTitle")), el("p", { class: "group" }, save, load), file, message, el("p", { class: "hint" }, t("recordHint")));
 }
 
 /** Take in a file of records; what came of it, in words. @param {import("./app.js").App} app @param {File} file */

@@ -4,7 +4,7 @@ import { FAIR, countsOf, showShare } from "./counts.js";
 import { el } from "./dom.js";
 import { BINS, errorBin, missedOf, scoreShare } from "./record.js";
 import { timing } from "./results.js";
-import { meanText, passedOf } from "./said.js";
+import { meanText, passedOf } from "./status_text.js";
 
 const NOTABLE = 50; // %: the least that a first play is called a best score for
 

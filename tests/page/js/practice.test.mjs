@@ -5,7 +5,7 @@ import { Transport } from "../../../dancetutor_cli/page/js/clock.js";
 import { Input } from "../../../dancetutor_cli/page/js/input.js";
 import { Practice } from "../../../dancetutor_cli/page/js/practice.js";
 import { addOutcomes, emptyRecord } from "../../../dancetutor_cli/page/js/record.js";
-import { countOf, passedOf, saidOf } from "../../../dancetutor_cli/page/js/said.js";
+import { countOf, passedOf, statusText } from "../../../dancetutor_cli/page/js/status_text.js";
 
 /** An app with a beat a second, a row at every second, and a clock that the test turns. */
 function make() {
@@ -45,7 +45,7 @@ test("the ramp goes on from the chosen speed, says so, and its end brings the ch
     go(at, transport, 12);
     assert.equal(transport.rate, rate);
   }
-  assert.equal(saidOf(app), "loopFrom oneMeasure 2 2 · ramped speedStep 75 80");
+  assert.equal(statusText(app), "loopFrom oneMeasure 2 2 · ramped speedStep 75 80");
   app.practice.endRamp();
   assert.equal(transport.rate, 0.7);
   assert.equal(app.practice.passes, 0);
@@ -75,7 +75,7 @@ test("a pass in which nobody presses anything teaches neither the coach nor the 
   app.loopBeats = async (a, b) => { transport.setLoop({ a, b }); transport.restartLoop(); transport.play(); };
   app.doc.passages = [{ start: 8, end: 12 }];
   await app.practice.coach.start();
-  assert.deepEqual([transport.rate, app.practice.coach.said], [0.7, "coachNew 70"]);
+  assert.deepEqual([transport.rate, app.practice.coach.message], [0.7, "coachNew 70"]);
   for (const press of [false, true]) {
     app.practice.restart(8);
     go(at, transport, 8);
@@ -83,7 +83,7 @@ test("a pass in which nobody presses anything teaches neither the coach nor the 
     go(at, transport, 12.01);
     assert.equal(transport.rate, press ? 0.6 : 0.7); // a quarter hit: back by a tenth
   }
-  assert.equal(app.practice.coach.said, "coachFailed 25 60 95");
+  assert.equal(app.practice.coach.message, "coachFailed 25 60 95");
   app.practice.coach.stop();
   transport.setRate(0.7);
   app.practice.restart(8);
@@ -145,7 +145,7 @@ test("a song that is played at full speed is the best, and what is pressed besid
   assert.deepEqual([record.top, record.scores, record.best, practice.longest], [100, { "8-12": 100 }, { "8-12": 100 }, 40]);
   const all = song(undefined, [0, 1, 2]); // every panel on every row
   assert.deepEqual([all.record.top, all.record.scores, all.record.best], [33, { "8-12": 33 }, {}]);
-  assert.match(saidOf(all), /^songOver 33 /);
+  assert.match(statusText(all), /^songOver 33 /);
 });
 
 test("what was pressed while the clock waited is no part of the best", () => {
@@ -221,7 +221,7 @@ test("the coach has a stretch passed at full speed only if all of it was", async
     app.practice.press(0, 0);
   }
   go(at, transport, 10);
-  assert.equal(app.practice.coach.said, "coachGoesOn 100 100");
+  assert.equal(app.practice.coach.message, "coachGoesOn 100 100");
 });
 
 test("the count-in shows the beats that are left, and nothing once the loop has begun", () => {
@@ -253,9 +253,9 @@ test("each press is judged in sight, for a moment; the end of the song says how 
   assert.equal(app.practice.shown(), null);
   go(at, transport, 40.5);
   assert.equal(transport.playing, false);
-  assert.match(saidOf(app), /^songOver 5 1 verdict-hit, 1 verdict-early, 1 verdict-late, 37 verdict-miss, 1 verdict-wrong/); // 1 + 2 halves of 41
+  assert.match(statusText(app), /^songOver 5 1 verdict-hit, 1 verdict-early, 1 verdict-late, 37 verdict-miss, 1 verdict-wrong/); // 1 + 2 halves of 41
   app.practice.restart(0);
-  assert.equal(saidOf(app), "");
+  assert.equal(statusText(app), "");
 });
 
 test("the first key that is no panel has the keys said, until a panel is pressed", () => {
@@ -263,10 +263,10 @@ test("the first key that is no panel has the keys said, until a panel is pressed
   app.input = new Input(["left", "down", "up", "right"], { keys: {}, pads: {} });
   app.practice.setAlong(true);
   app.practice.strayKey();
-  assert.equal(saidOf(app), "keysOrArrows D F J K ← ↓ ↑ →");
+  assert.equal(statusText(app), "keysOrArrows D F J K ← ↓ ↑ →");
   app.practice.press(0, 0);
   app.practice.strayKey();
-  assert.doesNotMatch(saidOf(app), /keys/);
+  assert.doesNotMatch(statusText(app), /keys/);
   assert.equal(new Input(["a", "b", "c", "d", "e"], { keys: {}, pads: {} }).columnOf("ArrowLeft"), -1); // Pump keeps its keys
   assert.deepEqual(["ArrowLeft", "ArrowDown", "ArrowUp", "ArrowRight", "KeyK"].map((code) => app.input.columnOf(code)), [0, 1, 2, 3, 3]);
 });
@@ -297,7 +297,7 @@ test("the coach loops what was missed, raises the speed by what is hit, and goes
   assert.equal(transport.rate, 1);
   pass(4);
   assert.deepEqual([transport.loop, transport.rate], [{ a: 20, b: 24 }, 0.7]); // passed: the next stretch, never passed yet
-  assert.match(saidOf(app), /coachNext 100 70/);
+  assert.match(statusText(app), /coachNext 100 70/);
   coach.stop();
   assert.equal(transport.rate, 1);
   assert.deepEqual(app.record.best, { "8-12": 100 });

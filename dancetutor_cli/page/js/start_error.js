@@ -48,7 +48,7 @@ const WORDS = {
 };
 
 /** @param {unknown} error what ended the start */
-export function failed(error) {
+export function showStartError(error) {
   const t = WORDS[/** @type {keyof typeof WORDS} */ ((navigator.language ?? "").slice(0, 2))] ?? WORDS.en;
   const old = !("DecompressionStream" in window);
   const why = String(error instanceof Error ? error.message : error).slice(0, 300);

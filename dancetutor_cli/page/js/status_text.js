@@ -1,4 +1,4 @@
-// What is said over the picture: what she waits for, what is looped, how it goes, who dances; and the count-in's number.
+// The message over the picture: what is waited for, what is looped, how it goes, who dances; and the number of the count-in.
 
 import { keyName } from "./input.js";
 import { placeOf, stretch } from "./places.js";
@@ -7,20 +7,20 @@ import { hitShare, panelShare, scoreShare } from "./record.js";
 export const KINDS = /** @type {const} */ (["hit", "early", "late", "miss", "wrong"]);
 
 /** @param {import("./app.js").App} app */
-export function saidOf(app) {
+export function statusText(app) {
   const { t, transport, practice, sound } = app;
   if (app.notice) return app.notice;
   if (practice.stray === "now") return keysText(app);
   if (transport.waiting) return t("waiting");
   const over = practice.along && practice.over ? overText(app, practice.over) : "";
-  const parts = [over, practice.coach.on && practice.along ? practice.coach.said : "", loopText(app)].filter(Boolean).join(" · ");
+  const parts = [over, practice.coach.on && practice.along ? practice.coach.message : "", loopText(app)].filter(Boolean).join(" · ");
   return parts || (app.musicLoading || (!app.played && !sound.music) ? musicText(app) : "");
 }
 
 /** Whether nothing happens that is worth a look: only that there is no music. @param {import("./app.js").App} app */
 export const quiet = (app) => !app.notice && !app.practice.along && !app.transport.loop;
 
-/** Whether there is music, and whose: the same words wherever it is said. @param {import("./app.js").App} app */
+/** Whether there is music, and whose: the same words in every place. @param {import("./app.js").App} app */
 export function musicText(app) {
   const { t, sound, musicName, musicBad } = app;
   if (app.musicLoading) return t("musicLoading");
@@ -29,7 +29,7 @@ export function musicText(app) {
 }
 
 /** Which keys are the panels. @param {import("./app.js").App} app */
-export function keysText(app) {
+function keysText(app) {
   const { keys, arrows } = app.input; // of whoever has pressed a key, a mat or not
   const names = [keys, arrows].filter((one) => one.length).map((one) => one.map(keyName).join(" "));
   return names.length > 1 ? app.t("keysOrArrows", { keys: names[0], arrows: names[1] }) : app.t("keysAre", { keys: names[0] });
@@ -102,7 +102,7 @@ export function secondText(app) {
   return app.t("bothLong", { left: app.t("theseFeet"), right: secondCaption(app).filter(Boolean).join(": ") });
 }
 
-/** Beats that are still counted in, as they are said: 4, 3, 2, 1; "" while none are. @param {import("./app.js").App} app */
+/** Beats that are still counted in: 4, 3, 2, 1; "" while none are. @param {import("./app.js").App} app */
 export function countOf(app) {
   const { transport, chart } = app;
   if (!transport.counting || !transport.loop) return "";
