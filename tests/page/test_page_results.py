@@ -56,7 +56,8 @@ def load_file(browser: Browser, content: str, name: str = "x.json") -> str:
     browser.run(
         "(async () => { const data = new DataTransfer();"
         f"data.items.add(new File([{content}], {json.dumps(name)}));"
-        "const input = document.querySelector('#record-file'); document.querySelector('#record-message').textContent = '';"
+        "const input = document.querySelector('#record-file');"
+        "document.querySelector('#record-message').textContent = '';"
         "input.files = data.files; input.dispatchEvent(new Event('change')); })()"
     )
     browser.wait("document.querySelector('#record-message').textContent !== ''")
