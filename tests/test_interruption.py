@@ -14,7 +14,7 @@ import pytest
 from dancetutor_cli.__main__ import main
 from dancetutor_cli.commands import cli
 from dancetutor_cli.run.errors import DancetutorError
-from dancetutor_cli.run.pool import Report, Task, open_workers
+from dancetutor_cli.run.pool import Task, open_workers
 from dancetutor_cli.run.process import catch_lost_interrupts
 
 EARLY = "import sys, dancetutor_cli\nraise KeyboardInterrupt"
@@ -56,7 +56,7 @@ main([])
 DIRECTLY = "print(twice(3))"
 AS_WORK = """from dancetutor_cli.run.pool import Task, open_workers
     workers = open_workers(1, print)
-    workers.submit(Task(1, lambda report: twice(3)))
+    workers.submit(Task(1, lambda: twice(3)))
     print(*workers.results())"""
 
 
@@ -125,7 +125,7 @@ def _faults() -> list[Exception]:
 @pytest.mark.parametrize("fault", _faults(), ids=["cause", "context", "twice", "door"])
 def test_ctrl_c_within_a_kernel(fault: Exception, interrupted_by: Callable[[Exception], tuple[object, str]]) -> None:
     assert interrupted_by(fault) == (130, "dancetutor: interrupted\n")
-    workers = open_workers(1, lambda key, n: None)
+    workers = open_workers(1)
     workers.submit(Task(1, _fail, (fault,)))
     with pytest.raises(KeyboardInterrupt):
         list(workers.results())
@@ -166,7 +166,7 @@ class _Lost:
         threading.Event().wait(60)
 
 
-def _fail(report: Report, error: Exception) -> None:
+def _fail(error: Exception) -> None:
     raise error
 
 
@@ -179,7 +179,7 @@ def interrupted_by(
     def ended(fault: Exception) -> tuple[object, str]:
         monkeypatch.delenv("DANCETUTOR_TRACEBACK", raising=False)
         monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
-        monkeypatch.setattr(cli, "main", lambda *_, **__: _fail(print, fault))
+        monkeypatch.setattr(cli, "main", lambda *_, **__: _fail(fault))
         with pytest.raises(SystemExit) as stop:
             main([])
         return stop.value.code, capsys.readouterr().err

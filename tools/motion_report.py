@@ -100,7 +100,7 @@ def main() -> None:
     if not wanted:
         sys.exit("no chart was found that has a pad")
     results, started = [], time.monotonic()
-    workers = open_workers(min(options.jobs, len(wanted)), lambda key, n: None)
+    workers = open_workers(min(options.jobs, len(wanted)))
     try:
         for chart in wanted:
             workers.submit(Task(chart, measure, (chart, options.preset, options.bar, options.section)))
@@ -180,7 +180,7 @@ def _everything(paths: tuple[Path, ...] | list[Path]) -> list[Wanted]:
     return out
 
 
-def measure(_: Any, wanted: Wanted, preset: str | None, bar: bool, length: float = 0.0) -> Measured:
+def measure(wanted: Wanted, preset: str | None, bar: bool, length: float = 0.0) -> Measured:
     """Bake one chart, or a section so many seconds long, and report on it; runs in a worker process."""
     from dancetutor_cli.chart.selection import Selection
     from dancetutor_cli.dance.bake import mines_of

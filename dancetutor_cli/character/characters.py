@@ -10,7 +10,7 @@ from dancetutor_cli.character.fitting import fit_character
 from dancetutor_cli.character.gltf import read_character
 from dancetutor_cli.character.mesh import Character, Material, Mesh
 from dancetutor_cli.feet.limbs import LIMBS, limb_colours
-from dancetutor_cli.run.errors import UsageError, choice
+from dancetutor_cli.run.errors import UsageError, choose_text
 from dancetutor_cli.run.reading import PACKAGE
 
 DATA = PACKAGE / "character" / "data"
@@ -41,7 +41,7 @@ def load_character(name_or_path: str) -> Character:
         return _built_in(name_or_path)
     path = Path(name_or_path)
     if path.suffix.lower() not in SUFFIXES:
-        characters = choice(name_or_path, BUILT_IN, "a .glb or .vrm file")
+        characters = choose_text(name_or_path, BUILT_IN, "a .glb or .vrm file")
         raise UsageError(f"there is no character {name_or_path!r}{characters}")
     return fit_character(path)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.run.errors import DancetutorError, UsageError
+from dancetutor_cli.run.errors import DancetutorError, UsageError, choose_text
 from dancetutor_cli.run.files import CHART_SUFFIXES, SONG_SUFFIXES
 
 if TYPE_CHECKING:
@@ -208,7 +208,7 @@ def _difficulty(text: str) -> str:
 
     name, known = names.difficulty(text, "", 0, old=True)
     if not known:
-        raise UsageError(f"there is no difficulty '{text}'; choose {', '.join(names.DIFFICULTIES)}")
+        raise UsageError(f"there is no difficulty '{text}'{choose_text(text, names.DIFFICULTIES)}")
     return name
 
 

@@ -21,7 +21,7 @@ from pathlib import Path
 import click
 
 import dancetutor_cli
-from dancetutor_cli.run.errors import choice
+from dancetutor_cli.run.errors import choose_text
 
 # name -> (module, short help); the short help is here so that `--help` imports no subcommand.
 COMMANDS = {
@@ -88,7 +88,7 @@ class _LazyGroup(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         name = args[0]
         if name not in COMMANDS and not name.startswith("-"):
-            ctx.fail(f"there is no command '{name}'{choice(name, COMMANDS)}")
+            ctx.fail(f"there is no command '{name}'{choose_text(name, COMMANDS)}")
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

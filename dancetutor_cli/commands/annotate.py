@@ -25,7 +25,7 @@ from dancetutor_cli.commands.shared_options import (
 from dancetutor_cli.markers.styles import STRIPPED, STYLES
 from dancetutor_cli.reports.joined_warnings import JoinedWarnings
 from dancetutor_cli.reports.terminal import coloured, safe
-from dancetutor_cli.run.errors import UsageError, choice
+from dancetutor_cli.run.errors import UsageError, choose_text
 from dancetutor_cli.run.files import check_folder
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[s
     names = [name.strip() for name in value.split(",") if name.strip()]
     for name in names:
         if name not in STRIPPED:
-            raise UsageError(f"there is no kind of markers '{name}'{choice(name, STYLES)}")
+            raise UsageError(f"there is no kind of markers '{name}'{choose_text(name, STYLES)}")
     if not names:
         raise UsageError(f"--markers: name one or more of {', '.join(STYLES)}")
     return tuple(name for name in STRIPPED if name in names)
@@ -179,10 +179,9 @@ def _outcomes(
         for song in songs:
             yield from annotate_song(song, request)
         return
-    from dancetutor_cli.markers.annotate import annotate_task
     from dancetutor_cli.run.pool import in_order
 
-    for outcomes in in_order(wanted, annotate_task, [(song, request) for song in songs]):
+    for outcomes in in_order(wanted, annotate_song, [(song, request) for song in songs]):
         yield from outcomes
 
 

@@ -13,7 +13,7 @@ from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.commands.motion_output import check_targets, write_report
 from dancetutor_cli.commands.shared_options import character_option, into, ragdoll_options, report_option
 from dancetutor_cli.formats.writers import FORMATS, keys
-from dancetutor_cli.run.errors import UsageError, choice
+from dancetutor_cli.run.errors import UsageError, choose_text
 from dancetutor_cli.run.files import check_file, one_of, write_atomic
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ def corrections_of(text: str) -> tuple[str, ...]:
     words = [] if text.strip() in ("", "none") else [word.strip() for word in text.split(",")]
     for word in words:
         if word not in _CORRECTIONS:
-            raise UsageError(f"--correct: there is no correction '{word}'{choice(word, (*_CORRECTIONS, 'none'))}")
+            raise UsageError(f"--correct: there is no correction '{word}'{choose_text(word, (*_CORRECTIONS, 'none'))}")
     return tuple(word for word in _CORRECTIONS if word in words)
 
 

@@ -12,7 +12,7 @@ import click
 
 from dancetutor_cli.commands.arguments import GivenPath, Second, WholeNumber
 from dancetutor_cli.commands.tab_names import characters, difficulties, folder, named, steps_types
-from dancetutor_cli.run.errors import UsageError, choice
+from dancetutor_cli.run.errors import UsageError, choose_text
 from dancetutor_cli.run.reading import config_names
 
 if TYPE_CHECKING:
@@ -245,4 +245,4 @@ def _language(context: click.Context, option: click.Parameter, value: str | None
     names = config_names("languages")
     if value is None or value in names:
         return value
-    raise UsageError(f"there is no language '{value}'{choice(value, names)}")
+    raise UsageError(f"there is no language '{value}'{choose_text(value, names)}")

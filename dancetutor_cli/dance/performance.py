@@ -208,8 +208,4 @@ def _pooled(jobs: int, function: Callable[[Piece], BakedPiece], pieces: Sequence
     if len(pieces) == 1:
         yield function(pieces[0])
         return
-    yield from in_order(jobs, _work, [(function, piece) for piece in pieces])
-
-
-def _work(_: object, function: Callable[[Piece], BakedPiece], piece: Piece) -> BakedPiece:
-    return function(piece)
+    yield from in_order(jobs, function, [(piece,) for piece in pieces])

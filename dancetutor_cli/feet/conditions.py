@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
 from dancetutor_cli.chart import names
-from dancetutor_cli.run.errors import choice, did_you_mean
+from dancetutor_cli.run.errors import choose_text, did_you_mean
 from dancetutor_cli.run.reading import shown_key
 from dancetutor_cli.run.schema import SEVERAL, Entries, Parsed, Texts
 
@@ -69,7 +69,7 @@ def _difficulty(text: Any) -> str:
     """Return the current name of a difficulty, in lower case; old names such as "Heavy" and "Oni" are accepted."""
     name, known = names.difficulty(str(text), "", 0, old=True)
     if not known:
-        raise ValueError(f"'{shown_key(text)}' is not a difficulty{choice(str(text), names.DIFFICULTIES)}")
+        raise ValueError(f"'{shown_key(text)}' is not a difficulty{choose_text(str(text), names.DIFFICULTIES)}")
     return name.lower()
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.errors import FileError, choose_text
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -30,7 +30,7 @@ def move_words(names: Iterable[str], path: Path, language: Language) -> dict[str
     """
     table, names = language.moves, tuple(names)
     if unknown := set(names) - set(table):
-        raise FileError(path, f"there is no move '{min(unknown)}'; choose {', '.join(sorted(table))}")
+        raise FileError(path, f"there is no move '{min(unknown)}'{choose_text(min(unknown), sorted(table))}")
     return {name: table[name] for name in names}
 
 

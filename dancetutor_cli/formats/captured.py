@@ -16,7 +16,7 @@ from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.formats.bvh import read_bvh
 from dancetutor_cli.formats.npz import read_npz
-from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.errors import FileError, choose_text
 from dancetutor_cli.run.files import one_of
 
 SUFFIXES = (".bvh", ".glb", ".vrm", ".npz")
@@ -98,8 +98,8 @@ def _find_animation(container: Container, wanted: str | None) -> dict[str, Any]:
     for animation in animations:
         if animation.get("name") == wanted:
             return animation
-    names = ", ".join(str(a.get("name", ""))[:40] for a in animations[:40])
-    raise FileError(container.path, f"there is no animation {wanted!r}; choose {names}")
+    names = [str(animation.get("name", ""))[:40] for animation in animations[:40]]
+    raise FileError(container.path, f"there is no animation {wanted!r}{choose_text(wanted, names)}")
 
 
 def _channels(container: Container, animation: dict[str, Any]) -> list[tuple[int, str, Array, Array]]:

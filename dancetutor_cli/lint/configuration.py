@@ -13,7 +13,7 @@ from dancetutor_cli.feet.conditions import Condition, When, condition_of
 from dancetutor_cli.feet.preset import preset_names
 from dancetutor_cli.lint.rule import matching, named_singly
 from dancetutor_cli.lint.rule_settings import Layer, RulesKeys, Settings, layer_of, resolve_name
-from dancetutor_cli.run.errors import FileError, UsageError, choice
+from dancetutor_cli.run.errors import FileError, UsageError, choose_text
 from dancetutor_cli.run.reading import config_names, config_path, is_outside, is_regular, shown_key
 from dancetutor_cli.run.schema import Bounds, Keys, MarkedYaml, Names, Text, Texts, convert
 from dancetutor_cli.run.yaml_files import parse_value, read
@@ -190,7 +190,7 @@ def _preset(source: MarkedYaml, name: str, place: Keys) -> str:
     if is_outside(path, folder):
         raise source.error(place, "'preset' names a file outside this file's folder; put it beside this file")
     if path.suffix.lower() not in (".yaml", ".yml") and not is_regular(path):
-        presets = choice(name, preset_names(), "a .yaml file")
+        presets = choose_text(name, preset_names(), "a .yaml file")
         raise source.error(place, f"there is no preset '{shown_key(name)}'{presets}")
     return str(path)
 

@@ -239,7 +239,7 @@ def _in_workers(tasks: Sequence[AnalyzeTask], jobs: int | None) -> _Fresh:
     from dancetutor_cli.run.pool import default_jobs, open_workers
 
     count = jobs or default_jobs()
-    workers = open_workers(count, lambda key, n: None)
+    workers = open_workers(count)
     try:
         for places in _batches(len(tasks), count):
             workers.submit(Work(places, _analyze, ([tasks[place] for place in places],)))
@@ -269,5 +269,5 @@ def _batches(tasks: int, jobs: int) -> Iterator[range]:
         first = after
 
 
-def _analyze(_: Callable[[int], None], tasks: Sequence[AnalyzeTask]) -> list[FileResult]:
+def _analyze(tasks: Sequence[AnalyzeTask]) -> list[FileResult]:
     return list(analyze_files(tasks))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -276,10 +276,3 @@ def _configured(preset: str | None) -> LintRun:
     from dancetutor_cli.lint.run import LintRequest, LintRun
 
     return LintRun(LintRequest(preset=preset))
-
-
-def annotate_task(
-    report: Callable[[int], None], items: Sequence[Item], request: AnnotateRequest
-) -> list[AnnotateOutcome]:
-    """Call `annotate_song` in a worker process."""
-    return annotate_song(items, request)

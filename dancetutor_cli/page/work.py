@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -354,7 +354,7 @@ def page_jobs(
 
 def make_all(jobs: list[PageJob], processes: int) -> Iterator[PageOutcome]:
     """Make pages in several processes, and yield each outcome when its page is done."""
-    workers = open_workers(min(processes, max(len(jobs), 1)), lambda key, n: None)
+    workers = open_workers(min(processes, max(len(jobs), 1)))
     try:
         for k, job in enumerate(jobs):
             workers.submit(Task(k, _make, (job,)))
@@ -370,7 +370,7 @@ def write_index(folder: Path, outcomes: list[PageOutcome], title: str) -> None:
     write_atomic(folder / INDEX, index_page([one.job.entry for one in outcomes if one.error is None], title))
 
 
-def _make(_: Callable[[int], None], job: PageJob) -> tuple[int, tuple[str, ...]]:
+def _make(job: PageJob) -> tuple[int, tuple[str, ...]]:
     page = make_page(job.request)
     write_atomic(job.target, page.html)
     return len(page.html), page.warnings

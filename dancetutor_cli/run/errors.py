@@ -68,7 +68,7 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return f" (did you mean {names[near[0]]}?)" if near else ""
 
 
-def choice(word: str, known: Iterable[str], *others: str) -> str:
+def choose_text(word: str, known: Iterable[str], *others: str) -> str:
     """Return the text to put after a wrong word: " (did you mean NAME?); choose A, B, or a .yaml file".
 
     If there are many names and one is near, only that name is listed. others : alternatives to the names

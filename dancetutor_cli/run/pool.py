@@ -22,11 +22,15 @@ class WorkFailedError(DancetutorError):
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """One piece of work, `key`: `function(report, *arguments)`, where `report(n)` says that n more units are done."""
+    """One piece of work, `key`: `function(*arguments)`.
+
+    reports : whether the function has one more argument, the first: `report(n)` says that n more units are done
+    """
 
     key: Any
     function: Callable[..., Any]
     arguments: tuple[Any, ...] = ()
+    reports: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,9 +66,14 @@ def default_jobs() -> int:
         return max(1, os.cpu_count() or 1)
 
 
-def open_workers(jobs: int, report: Callable[[Any, int], None], common: str = "") -> Workers:
-    """Open `jobs` worker processes, or use this process alone for 1. Reports of tasks call report(key, n).
+def no_report(_key: Any, _count: int) -> None:
+    """Ignore a report."""
 
+
+def open_workers(jobs: int, report: Callable[[Any, int], None] = no_report, common: str = "") -> Workers:
+    """Open `jobs` worker processes, or use this process alone for 1.
+
+    report : called as report(key, n) by tasks that report
     common : a module that all workers need; it is imported only once, if the system can share it
     """
     if jobs <= 1:
@@ -75,11 +84,11 @@ def open_workers(jobs: int, report: Callable[[Any, int], None], common: str = ""
 
 
 def in_order(jobs: int, function: Callable[..., Any], arguments: Sequence[tuple[Any, ...]]) -> Iterator[Any]:
-    """Yield `function(report, *one)` of each of the arguments, in their order, each as early as possible.
+    """Yield `function(*one)` of each of the arguments, in their order, each as early as possible.
 
     Raises the error of the task that fails first.
     """
-    workers = open_workers(min(jobs, len(arguments)), lambda key, n: None)
+    workers = open_workers(min(jobs, len(arguments)))
     try:
         for number, one in enumerate(arguments):
             workers.submit(Task(number, function, one))
@@ -101,7 +110,7 @@ def attempt(task: Task, report: Report) -> FinishedWork:
     Raises KeyboardInterrupt if a Ctrl-C made the task fail.
     """
     try:
-        return FinishedWork(task.key, task.function(report, *task.arguments))
+        return FinishedWork(task.key, task.function(*((report,) if task.reports else ()), *task.arguments))
     except Exception as error:
         if is_interruption(error):
             raise KeyboardInterrupt from error

@@ -13,7 +13,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from dancetutor_cli.run.errors import FileError, MissingFileError, UnavailableError, UsageError, choice
+from dancetutor_cli.run.errors import FileError, MissingFileError, UnavailableError, UsageError, choose_text
 
 # Reading of untrusted files: only regular files of limited size, and JSON of limited depth with unique names.
 #
@@ -204,7 +204,7 @@ def named_file(folder: str, name: str | Path) -> Path:
         return config_path(f"{folder}/{name}.yaml")
     if path.suffix.lower() in (".yaml", ".yml") or is_regular(path):
         return path
-    raise UsageError(f"there is no {folder[:-1]} '{name}'{choice(str(name), names, 'a .yaml file')}")
+    raise UsageError(f"there is no {folder[:-1]} '{name}'{choose_text(str(name), names, 'a .yaml file')}")
 
 
 def charts_path() -> Path:

@@ -12,7 +12,7 @@ from math import inf
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, TypeVar, Union, get_args, get_origin
 
-from dancetutor_cli.run.errors import FileError, choice
+from dancetutor_cli.run.errors import FileError, choose_text
 from dancetutor_cli.run.reading import shown_key
 
 T = TypeVar("T")
@@ -145,7 +145,7 @@ class MarkedYaml:
         for name in names:
             if name not in known:
                 where = f" in '{_path(keys)}'" if keys else ""
-                message = f"unknown key '{shown_key(name)}'{where}{choice(str(name), known)}"
+                message = f"unknown key '{shown_key(name)}'{where}{choose_text(str(name), known)}"
                 raise self.error((*keys, str(name)), message)
 
     def only(self, keys: Keys, known: Collection[str]) -> None:
@@ -200,7 +200,7 @@ def _value(source: MarkedYaml, keys: Keys, data: Any, hint: Any, base: Any = Non
         return _mapping(source, keys, data, inner, base) if is_mapping else _list(source, keys, data, hint)
     names = _names_of(kind, marks)
     if names and (not isinstance(data, str) or data not in names):
-        there = choice(data if isinstance(data, str) else "", names)
+        there = choose_text(data if isinstance(data, str) else "", names)
         raise _wrong(source, keys, data, hint, f"there is no {_shown(data)}{there}")
     if not names and not _fits(data, kind, _bounds(marks)):
         raise _wrong(source, keys, data, hint)

@@ -22,24 +22,28 @@ pytestmark = pytest.mark.usefixtures("own_records")
 COMMON = "dancetutor_cli.film.choices"
 
 
-def double(report: Report, number: int) -> int:
+def double(number: int) -> int:
+    return 2 * number
+
+
+def report_and_double(report: Report, number: int) -> int:
     report(number)
     return 2 * number
 
 
-def refuse(report: Report, number: int) -> int:
+def refuse(number: int) -> int:
     raise FileError("a.sm", f"refused {number}", 3)
 
 
-def stumble(report: Report) -> None:
+def stumble() -> None:
     raise ZeroDivisionError("oh")
 
 
-def fetch(report: Report, module: str) -> None:
+def fetch(module: str) -> None:
     import_module(module)
 
 
-def die(report: Report, marker: Path | None) -> str:
+def die(marker: Path | None) -> str:
     """Dies; with a marker only the first time."""
     if marker is None or not marker.exists():
         if marker is not None:
@@ -48,16 +52,16 @@ def die(report: Report, marker: Path | None) -> str:
     return "survived"
 
 
-def hears(report: Report | None) -> bool:
+def hears() -> bool:
     """Whether Ctrl-C was let through to this process as it began."""
     return signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
 
 
-def has_imported(report: Report, name: str) -> bool:
+def has_imported(name: str) -> bool:
     return name in sys.modules
 
 
-def sleep(report: Report, seconds: float) -> None:
+def sleep(seconds: float) -> None:
     time.sleep(seconds)
 
 
@@ -67,7 +71,7 @@ def test_results_and_reports_come_back(jobs: int, common: str) -> None:
     workers = open_workers(jobs, lambda key, n: reported.__setitem__(key, n), common)
     try:
         for number in range(5):
-            workers.submit(Task(f"t{number}", double, (number,)))
+            workers.submit(Task(f"t{number}", report_and_double, (number,), reports=True))
         results = {done.key: done.result for done in workers.results()}
     finally:
         workers.close()
@@ -77,7 +81,7 @@ def test_results_and_reports_come_back(jobs: int, common: str) -> None:
 
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_errors_come_back_as_they_are(jobs: int) -> None:
-    workers = open_workers(jobs, lambda key, n: None)
+    workers = open_workers(jobs)
     try:
         workers.submit(Task("known", refuse, (7,)))
         workers.submit(Task("unknown", stumble))
@@ -90,9 +94,9 @@ def test_errors_come_back_as_they_are(jobs: int) -> None:
     )
 
 
-def late(report: Report, number: int) -> int:
+def late(number: int) -> int:
     time.sleep(0.3 * (number == 0))
-    return double(report, number)
+    return double(number)
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
@@ -104,7 +108,7 @@ def test_in_order_though_the_first_is_done_last(jobs: int) -> None:
 
 
 def test_more_work_may_come_while_results_do() -> None:
-    workers = open_workers(2, lambda key, n: None)
+    workers = open_workers(2)
     seen = []
     try:
         workers.submit(Task(1, double, (1,)))
@@ -119,7 +123,7 @@ def test_more_work_may_come_while_results_do() -> None:
 
 @pytest.mark.parametrize("common", ["", COMMON])
 def test_the_work_of_a_dead_worker_is_done_again_once(tmp_path: Path, common: str) -> None:
-    workers = open_workers(2, lambda key, n: None, common)
+    workers = open_workers(2, common=common)
     try:
         workers.submit(Task("once", die, (tmp_path / "died",)))
         workers.submit(Task("always", die, (None,)))
@@ -133,7 +137,7 @@ def test_the_work_of_a_dead_worker_is_done_again_once(tmp_path: Path, common: st
 
 @pytest.mark.parametrize("common", ["", COMMON])
 def test_closing_does_not_wait_for_work(common: str) -> None:
-    workers = open_workers(2, lambda key, n: None, common)
+    workers = open_workers(2, common=common)
     workers.submit(Task("long", sleep, (60.0,)))
     begin = time.monotonic()
     workers.close()
@@ -141,7 +145,7 @@ def test_closing_does_not_wait_for_work(common: str) -> None:
 
 
 def test_what_is_common_is_there_before_the_first_work() -> None:
-    workers = open_workers(2, lambda key, n: None, COMMON)
+    workers = open_workers(2, common=COMMON)
     try:
         workers.submit(Task(1, has_imported, (COMMON,)))
         assert [done.result for done in workers.results()] == [True]
@@ -158,7 +162,7 @@ def test_a_server_that_is_killed_is_done_without(monkeypatch: pytest.MonkeyPatch
             raise EOFError("no answer")
 
     monkeypatch.setattr("dancetutor_cli.run.worker_processes._server", lambda common: Killed)
-    workers = open_workers(2, lambda key, n: None, COMMON)
+    workers = open_workers(2, common=COMMON)
     try:
         workers.submit(Task(1, double, (1,)))
         assert [done.result for done in workers.results()] == [2]
@@ -175,10 +179,10 @@ def test_workers_and_their_server_hear_of_no_ctrl_c_from_their_start(tmp_path: P
         "import signal\n"
         "from tests.run.test_run_pool import Task, hears, open_workers\n"
         "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-        f"workers = open_workers(2, lambda key, n: None, {common!r})\n"
+        f"workers = open_workers(2, common={common!r})\n"
         "workers.submit(Task(1, hears))\n"
         "workers.submit(Task(2, hears))\n"
-        "print(*[done.result for done in workers.results()], hears(None))\n"
+        "print(*[done.result for done in workers.results()], hears())\n"
         "workers.close()\n"
     )
     path = os.pathsep.join([str(Path(__file__).parents[2]), str(tmp_path)])
@@ -213,7 +217,7 @@ def test_a_shared_module_that_raises_leaves_no_traceback(tmp_path: Path) -> None
     (tmp_path / "broken.py").write_text("raise RuntimeError('x.yaml: no such colour')\n", encoding="utf-8")
     program = (
         "from tests.run.test_run_pool import Task, double, fetch, open_workers\n"
-        "workers = open_workers(2, lambda key, n: None, 'broken')\n"
+        "workers = open_workers(2, common='broken')\n"
         "workers.submit(Task(1, double, (1,)))\n"
         "workers.submit(Task(2, fetch, ('broken',)))\n"
         "for done in sorted(workers.results(), key=lambda done: done.key):\n"

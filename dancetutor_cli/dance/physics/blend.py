@@ -17,7 +17,7 @@ from dancetutor_cli.dance.physics.style import NEUTRAL, Style, load_style
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.settings import MotionSettings, SettingsCourse, Span, load_settings, state_weights
 from dancetutor_cli.dance.units import Array, Poses
-from dancetutor_cli.run.errors import DancetutorError, UsageError, choice
+from dancetutor_cli.run.errors import DancetutorError, UsageError, choose_text
 from dancetutor_cli.run.reading import config_names, is_outside, named_file
 from dancetutor_cli.run.yaml_files import read
 
@@ -178,7 +178,7 @@ def weights_within(text: str, folder: Path) -> list[tuple[str, float]]:
         if is_outside(path, folder):
             raise UsageError(f"'{name}' is outside the folder of the style file; put it beside it")
         if name not in names and not path.suffix and not path.is_file():
-            raise UsageError(f"there is no style '{name}'{choice(name, names)}")
+            raise UsageError(f"there is no style '{name}'{choose_text(name, names)}")
         out.append((name if name in names else str(path), weight))
     return out
 

@@ -16,7 +16,7 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import sole_points, world_transforms
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array, Poses
-from dancetutor_cli.run.errors import UsageError, choice
+from dancetutor_cli.run.errors import UsageError, choose_text
 
 if TYPE_CHECKING:
     from dancetutor_cli.dance.motion import Contact, Motion
@@ -172,7 +172,7 @@ def parse_push(text: str) -> Push:
     try:
         degrees = float(way)
     except ValueError:
-        ways = choice(way, _WAYS, "degrees")
+        ways = choose_text(way, _WAYS, "degrees")
         raise UsageError(f"--push {text}: there is no direction '{way}'{ways}") from None
     if not abs(degrees) <= 360:
         raise UsageError(f"--push {text}: the direction must be at most 360 degrees")

@@ -13,7 +13,7 @@ from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.rig.two_bones import hinge_axis
 from dancetutor_cli.dance.units import Array
-from dancetutor_cli.run.errors import UsageError, choice
+from dancetutor_cli.run.errors import UsageError, choose_text
 
 if TYPE_CHECKING:
     from dancetutor_cli.dance.physics.style import Style
@@ -75,7 +75,7 @@ def points_of(skeleton: Skeleton, bones: tuple[Bone, ...], style: Style) -> tupl
 def _check_names(style: Style, what: str, given: Iterable[str], names: list[str]) -> None:
     for name in given:
         if name not in names:
-            raise UsageError(f"style {style.name}: there is no {what} '{name}'{choice(name, names)}")
+            raise UsageError(f"style {style.name}: there is no {what} '{name}'{choose_text(name, names)}")
 
 
 def _places(skeleton: Skeleton, bone: Bone, style: Style) -> list[tuple[str, Array, Array]]:

@@ -15,7 +15,7 @@ import numpy as np
 
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.scene.look import CameraLook, Look
-from dancetutor_cli.run.errors import UsageError, choice
+from dancetutor_cli.run.errors import UsageError, choose_text
 
 Region = tuple[float, float, float, float]
 WHOLE: Region = (0.0, 0.0, 1.0, 1.0)
@@ -189,7 +189,7 @@ def _is_name(text: str) -> bool:
 def _named(name: str, look: Look) -> CameraLook:
     if name in look.cameras:
         return look.cameras[name]
-    raise UsageError(f"there is no camera '{name}'{choice(name, look.cameras, 'POSITION/TARGET as x,y,z/x,y,z')}")
+    raise UsageError(f"there is no camera '{name}'{choose_text(name, look.cameras, 'POSITION/TARGET as x,y,z/x,y,z')}")
 
 
 def _points(text: str) -> list[list[float]]:

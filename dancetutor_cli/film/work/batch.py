@@ -21,7 +21,7 @@ from dancetutor_cli.film.work.jobs import ClosedFilm, FilmJob, FilmOutcome, Open
 from dancetutor_cli.film.work.records import FilmRecord, FilmRecords, find_records, new_work_name, remove_work
 from dancetutor_cli.film.work.request import FilmRequest
 from dancetutor_cli.film.work.segments import render_segment
-from dancetutor_cli.run.errors import DancetutorError, FileError, NoChartsError, UsageError
+from dancetutor_cli.run.errors import DancetutorError, FileError, NoChartsError, UsageError, choose_text
 from dancetutor_cli.run.ffmpeg import EncoderError
 from dancetutor_cli.run.files import plain_name
 from dancetutor_cli.run.pool import FinishedWork, Task, Workers, attempt, open_workers
@@ -99,7 +99,7 @@ def check_name(template: str) -> None:
     except ValueError as error:
         raise UsageError(f"--name {template}: {error}") from error
     if unknown := [name for name in fields if name not in FIELDS]:
-        raise UsageError(f"--name {template}: there is no {{{unknown[0]}}}; choose {', '.join(FIELDS)}")
+        raise UsageError(f"--name {template}: there is no {{{unknown[0]}}}{choose_text(unknown[0], FIELDS)}")
     if "/" in template or "\\" in template:
         raise UsageError(f"--name {template}: the films of a batch are in one folder; leave slashes out")
 
@@ -292,7 +292,7 @@ class Batch:
         self._keep(film, FilmRecord(opened.key, (film.work,), kept))
         self.opened(sum(part.last - part.first for part in opened.missing))
         tasks = [
-            Task(("segment", number, part.number), render_segment, (opened.plan, part, film.job.encoding))
+            Task(("segment", number, part.number), render_segment, (opened.plan, part, film.job.encoding), reports=True)
             for part in opened.missing
         ]
         if opened.sound is not None:

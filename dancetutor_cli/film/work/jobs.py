@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.media.sound import SoundPlan
     from dancetutor_cli.film.plan import FilmPlan
     from dancetutor_cli.film.work.request import FilmSubject
-    from dancetutor_cli.run.pool import Report
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +104,7 @@ def outcome(job: FilmJob, opened: OpenedFilm | None, error: DancetutorError | No
     return FilmOutcome(job, status, None, opened.warnings, opened.frames, seconds)
 
 
-def open_film(report: Report, job: FilmJob, earlier: FilmRecord, work: str) -> OpenedFilm:
+def open_film(job: FilmJob, earlier: FilmRecord, work: str) -> OpenedFilm:
     """Do all work before the first frame, with the results of an earlier run of the same film.
 
     earlier : the record of that run; work : name of the folder to make beside the output, for unfinished files
@@ -191,7 +190,7 @@ class ClosedFilm(NamedTuple):
     warnings: tuple[str, ...]
 
 
-def close_film(report: Report, job: FilmJob, opened: OpenedFilm, digests: dict[int, str]) -> ClosedFilm:
+def close_film(job: FilmJob, opened: OpenedFilm, digests: dict[int, str]) -> ClosedFilm:
     """Join the segments, and write the film, poster and subtitles to their places.
 
     FileError if a segment has changed since it was written.
@@ -218,7 +217,7 @@ def close_film(report: Report, job: FilmJob, opened: OpenedFilm, digests: dict[i
     return ClosedFilm(size_of(job.output), tuple(warnings))
 
 
-def write_sound(report: Report, sound: SoundPlan, clock: Clock, path: Path) -> None:
+def write_sound(sound: SoundPlan, clock: Clock, path: Path) -> None:
     """Write the sound track as a WAV file."""
     from dancetutor_cli.film.media.sound import mix, write_wav
 

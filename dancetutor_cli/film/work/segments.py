@@ -97,7 +97,7 @@ def common_to_workers(kind: RendererKind) -> str:
     return "dancetutor_cli.film.work.worker_imports" if is_kept(resolve) else ""
 
 
-def warm_up(report: Report) -> None:
+def warm_up() -> None:
     """Do the work before the first frame of the "cpu" renderer, while the film is still being prepared.
 
     It imports the modules for drawing, and loads or compiles their kernels by drawing a tiny room.

@@ -14,5 +14,5 @@ from dancetutor_cli.run.process import reduce_garbage_collection
 
 reduce_garbage_collection()
 with suppress(Exception):  # a film that needs a missing part reports it
-    segments.warm_up(lambda units: None)
+    segments.warm_up()
 gc.freeze()  # keeps these objects from the garbage collector, which would give each worker a copy

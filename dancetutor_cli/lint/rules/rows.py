@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.rule import ChartRule, ReaderRule
+from dancetutor_cli.run.errors import choose_text
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.subject import ChartSubject, FileSubject
@@ -136,7 +137,7 @@ class ForbiddenNotes(ChartRule):
     def fault(cls, option: str, value: Any) -> str | None:
         """Return the message for an unknown kind, or None."""
         unknown = [kind for kind in value if kind not in KINDS] if option == "kinds" else []
-        return f"there is no kind '{unknown[0]}'; choose {', '.join(KINDS)}" if unknown else None
+        return f"there is no kind '{unknown[0]}'{choose_text(str(unknown[0]), KINDS)}" if unknown else None
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each kind, at its first note, with the number of its notes."""
