@@ -16,7 +16,7 @@ from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.dance.settings_feet import StepSettings
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array
-from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
+from dancetutor_cli.run.kernels.compiling import njit, njit_inner
 
 # How far a swing has come at each part of its time, and how much it is reduced if time is short.
 
@@ -251,7 +251,7 @@ def _segment_gaps(a: Array, b: Array, c: Array, d: Array, out: Array) -> None:
         out[k] = min(first, _point_gap(cx, cy, (ax, ay, bx, by)), _point_gap(dx, dy, (ax, ay, bx, by)))
 
 
-@inner_kernel
+@njit_inner
 def _point_gap(x: float, y: float, line: tuple[float, float, float, float]) -> float:
     """Return the distance from a point to a segment, given as the places of its ends."""
     px, py = x - line[0], y - line[1]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.errors import DancetutorError
-from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
+from dancetutor_cli.run.kernels.compiling import njit, njit_inner
 
 # Least squares over long sequences: every term has a few neighbouring nodes, so the normal matrix is a band.
 #
@@ -224,7 +224,7 @@ class _Rows(NamedTuple):
     give: Array
 
 
-@inner_kernel
+@njit_inner
 def _times_rows(limits: _Rows, x: Array) -> Array:
     start, width, rows = limits.start, limits.width, limits.rows
     out = np.zeros(len(start))

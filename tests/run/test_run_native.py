@@ -21,12 +21,12 @@ from dancetutor_cli.run.kernels import compiling, native, store
 from dancetutor_cli.run.kernels.native import Kernel, MachineCode
 
 MODULE = """
-from dancetutor_cli.run.kernels.native import inner_kernel
+from dancetutor_cli.run.kernels.native import native_inner
 
 def twice(x):
     return 2 * x
 
-twice = inner_kernel(twice)
+twice = native_inner(twice)
 
 def sums(pair, factor, out):
     whole = 0

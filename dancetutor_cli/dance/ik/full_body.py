@@ -29,7 +29,7 @@ from dancetutor_cli.dance.rig.limbs import (
 )
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.units import Array, Poses
-from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
+from dancetutor_cli.run.kernels.compiling import njit, njit_inner
 
 # The kernels of the full-body inverse kinematics, on plain arrays, grouped by subject.
 
@@ -120,22 +120,22 @@ def _hinges(skeleton: Skeleton, joints: NDArray[np.int64]) -> Array:
     return out
 
 
-@inner_kernel
+@njit_inner
 def _vec(a: Array) -> Vec:
     return (a[0], a[1], a[2])
 
 
-@inner_kernel
+@njit_inner
 def _quat(a: Array) -> Quat:
     return (a[0], a[1], a[2], a[3])
 
 
-@inner_kernel
+@njit_inner
 def _put(out: Array, q: Quat) -> None:
     out[0], out[1], out[2], out[3] = q
 
 
-@inner_kernel
+@njit_inner
 def _pull_root(root: Vec, pelvis: Quat, hips: tuple[Vec, Vec], ankles: tuple[Vec, Vec], reach: float) -> Vec:
     """Move the root as little as needed until both ankles are within reach of their hips."""
     left, right = qrot(pelvis, hips[0]), qrot(pelvis, hips[1])
@@ -153,7 +153,7 @@ def _pull_root(root: Vec, pelvis: Quat, hips: tuple[Vec, Vec], ankles: tuple[Vec
     return root
 
 
-@inner_kernel
+@njit_inner
 def _chain(start: Vec, between: tuple[Vec, Vec], end: Vec, lengths: tuple[float, float, float]) -> tuple[Vec, Vec, Vec]:
     """FABRIK on a chain of three bones from the fixed `start` to the wanted `end`, and the two joints between."""
     p2, p3 = between
@@ -171,7 +171,7 @@ def _chain(start: Vec, between: tuple[Vec, Vec], end: Vec, lengths: tuple[float,
     return p2, p3, p4
 
 
-@inner_kernel
+@njit_inner
 def _chest(up: Vec, across: Vec, rest_up: Vec) -> Quat:
     """Return the chest rotation from the directions of its middle line and of its shoulder line."""
     x = unit(sub(across, scale(up, dot(across, up))))
@@ -179,7 +179,7 @@ def _chest(up: Vec, across: Vec, rest_up: Vec) -> Quat:
     return qmul(qframe(x, up, cross(x, up)), qconj(qframe(rest_x, rest_up, cross(rest_x, rest_up))))
 
 
-@inner_kernel
+@njit_inner
 def _torso(
     root: Vec, pelvis: Quat, chest: Quat, shoulders: tuple[Vec, Vec], rig: Rig
 ) -> tuple[Quat, Quat, Quat, Vec, Vec]:
@@ -203,7 +203,7 @@ def _torso(
     return q1, q2, q3, add(p3, qrot(q3, lo)), add(p3, qrot(q3, ro))
 
 
-@inner_kernel
+@njit_inner
 def _aim(q: Quat, bone: Vec, direction: Vec) -> Quat:
     """Return q, swung by as little as needed so that the bone points in the direction."""
     return qmul(qbetween(unit(qrot(q, bone)), unit(direction)), q)
@@ -242,7 +242,7 @@ def solve_frames(rig: Rig, trunk: Trunk, hands: ArmTargets, legs: LegTargets, ro
             _leg((f, side), add(place, qrot(pelvis, hips[side])), pelvis, rig, legs, out)
 
 
-@inner_kernel
+@njit_inner
 def _excess(shoulder: Vec, wrist: Vec, most: float, weight: float) -> Vec:
     """Return the vector by which an arm misses its wrist's target, times the squared weight."""
     v = sub(wrist, shoulder)
@@ -250,7 +250,7 @@ def _excess(shoulder: Vec, wrist: Vec, most: float, weight: float) -> Vec:
     return scale(v, weight * weight * max(0.0, d - most) / max(d, 1e-9))
 
 
-@inner_kernel
+@njit_inner
 def _arm(at: tuple[int, int], shoulder: Vec, chest: Quat, rig: Rig, hands: ArmTargets, out: Array) -> None:
     """Solve one arm. at : frame and side"""
     f, side = at
@@ -268,7 +268,7 @@ def _arm(at: tuple[int, int], shoulder: Vec, chest: Quat, rig: Rig, hands: ArmTa
     _put(out[joints[base + 3]], qlerp(free, pin, _turned_share(pin[0], pinned)) if pinned > 0.0 else free)
 
 
-@inner_kernel
+@njit_inner
 def _turned_share(half_cosine: float, pinned: float) -> float:
     """Return the share of a partly pinned hand's turn from its forearm to its wanted rotation.
 
@@ -279,7 +279,7 @@ def _turned_share(half_cosine: float, pinned: float) -> float:
     return pinned * (1.0 - (1.0 - pinned**4) * (1.0 - near * near * (3.0 - 2.0 * near)))
 
 
-@inner_kernel
+@njit_inner
 def _leg(at: tuple[int, int], hip: Vec, pelvis: Quat, rig: Rig, legs: LegTargets, out: Array) -> None:
     """Solve one leg. at : frame and side"""
     f, side = at

@@ -18,7 +18,7 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.settings_body import HairSettings
 from dancetutor_cli.dance.smoothing import cubic
 from dancetutor_cli.dance.units import Array
-from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
+from dancetutor_cli.run.kernels.compiling import njit, njit_inner
 
 JOINTS = ("braid1", "braid2", "braid3", "braid4")
 TIP = (0.0, -0.110, 0.0)  # from the last joint to the end of the braid in the rest pose, metres
@@ -97,7 +97,7 @@ def _anchors(skeleton: Skeleton, times: Array, positions: Array, world: Array, f
     return Anchors(placed("braid1"), quat.normalize(turn), np.ascontiguousarray(ends))
 
 
-@inner_kernel
+@njit_inner
 def _along(p: Vec, a: Vec, b: Vec) -> float:
     """Return the nearest place to p on the line from a to b: 0 at a, 1 at b."""
     line = sub(b, a)
@@ -105,7 +105,7 @@ def _along(p: Vec, a: Vec, b: Vec) -> float:
     return min(1.0, max(0.0, dot(sub(p, a), line) / size)) if size > 0.0 else 0.0
 
 
-@inner_kernel
+@njit_inner
 def _cleared(p: Vec, above: Vec, ends: Array, radii: tuple[float, ...], last: int, inside: float) -> Vec:
     """Move p, the lower end of a segment, out of the first capsules, ends (2, c, 3), and its middle out of the thin
     ones.
@@ -123,14 +123,14 @@ def _cleared(p: Vec, above: Vec, ends: Array, radii: tuple[float, ...], last: in
     return p
 
 
-@inner_kernel
+@njit_inner
 def _lengthened(p: Vec, above: Vec, size: float) -> Vec:
     """Return the lower end of a segment, `size` metres from the upper end."""
     bone = sub(p, above)
     return add(above, scale(bone, size / length(bone)))
 
 
-@inner_kernel
+@njit_inner
 def _no_further(a: Vec, b: Vec, most: float) -> Vec:
     """Return the unit vector b, limited to `most` radians from unit vector a."""
     cosine = dot(a, b)
@@ -143,17 +143,17 @@ def _no_further(a: Vec, b: Vec, most: float) -> Vec:
     return add(scale(a, math.cos(most)), scale(aside, math.sin(most) / size))
 
 
-@inner_kernel
+@njit_inner
 def _vec(a: Array) -> Vec:
     return (a[0], a[1], a[2])
 
 
-@inner_kernel
+@njit_inner
 def _put(a: Array, k: int, v: Vec) -> None:
     a[k, 0], a[k, 1], a[k, 2] = v
 
 
-@inner_kernel
+@njit_inner
 def _copy(a: Array, to: Array) -> None:
     """Copy points (n, 3). An assignment of the whole array makes numba compile an error message, for a
     second and more.
@@ -177,7 +177,7 @@ class _Braid(NamedTuple):
     droop: float
 
 
-@inner_kernel
+@njit_inner
 def _rub(p: Array, state: Array, anchors: Anchors, now: int, radii: tuple[float, ...], share: float) -> None:
     """Slow down points (n, 3) that touch a capsule, by a share of their speed along the capsule.
 
@@ -203,7 +203,7 @@ def _rub(p: Array, state: Array, anchors: Anchors, now: int, radii: tuple[float,
                 state[1, k, d] += share * slips[d]
 
 
-@inner_kernel
+@njit_inner
 def _bent(p: Array, before: Array, held: Vec, lengths: Array, braid: _Braid, ends: Array) -> None:
     """Do one round: each segment leans to its place at the head (`held`) or the segment before, and is pushed out of
     capsules.
@@ -222,7 +222,7 @@ def _bent(p: Array, before: Array, held: Vec, lengths: Array, braid: _Braid, end
         _put(p, k, _lengthened(here, above, lengths[k - 1]))
 
 
-@inner_kernel
+@njit_inner
 def _limited(
     p: Vec,
     above: Vec,

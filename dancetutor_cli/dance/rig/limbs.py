@@ -9,7 +9,7 @@ import numpy as np
 
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.units import Array
-from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
+from dancetutor_cli.run.kernels.compiling import njit, njit_inner
 
 # Vector and quaternion arithmetic on tuples and the closed-form two-bone limb, for numba kernels.
 #
@@ -19,37 +19,37 @@ Vec = tuple[float, float, float]
 Quat = tuple[float, float, float, float]
 
 
-@inner_kernel
+@njit_inner
 def add(a: Vec, b: Vec) -> Vec:
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
-@inner_kernel
+@njit_inner
 def sub(a: Vec, b: Vec) -> Vec:
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
-@inner_kernel
+@njit_inner
 def scale(a: Vec, k: float) -> Vec:
     return (a[0] * k, a[1] * k, a[2] * k)
 
 
-@inner_kernel
+@njit_inner
 def dot(a: Vec, b: Vec) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@inner_kernel
+@njit_inner
 def cross(a: Vec, b: Vec) -> Vec:
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-@inner_kernel
+@njit_inner
 def length(a: Vec) -> float:
     return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
-@inner_kernel
+@njit_inner
 def unit(a: Vec) -> Vec:
     n = length(a)
     if n < 1e-12:
@@ -57,7 +57,7 @@ def unit(a: Vec) -> Vec:
     return (a[0] / n, a[1] / n, a[2] / n)
 
 
-@inner_kernel
+@njit_inner
 def qmul(a: Quat, b: Quat) -> Quat:
     return (
         a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
@@ -67,32 +67,32 @@ def qmul(a: Quat, b: Quat) -> Quat:
     )
 
 
-@inner_kernel
+@njit_inner
 def qconj(a: Quat) -> Quat:
     return (a[0], -a[1], -a[2], -a[3])
 
 
-@inner_kernel
+@njit_inner
 def qrot(q: Quat, v: Vec) -> Vec:
     axis = (q[1], q[2], q[3])
     t = scale(cross(axis, v), 2.0)
     return add(add(v, scale(t, q[0])), cross(axis, t))
 
 
-@inner_kernel
+@njit_inner
 def qaxis(axis: Vec, angle: float) -> Quat:
     """Return the turn about a unit axis."""
     s = math.sin(angle / 2.0)
     return (math.cos(angle / 2.0), axis[0] * s, axis[1] * s, axis[2] * s)
 
 
-@inner_kernel
+@njit_inner
 def qunit(q: Quat) -> Quat:
     n = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
     return (q[0] / n, q[1] / n, q[2] / n, q[3] / n)
 
 
-@inner_kernel
+@njit_inner
 def qlerp(a: Quat, b: Quat, t: float) -> Quat:
     """Interpolate on the short arc and normalise; close to slerp for the small angles of a spine."""
     sign = 1.0 if a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] >= 0.0 else -1.0
@@ -100,7 +100,7 @@ def qlerp(a: Quat, b: Quat, t: float) -> Quat:
     return qunit((u * a[0] + v * b[0], u * a[1] + v * b[1], u * a[2] + v * b[2], u * a[3] + v * b[3]))
 
 
-@inner_kernel
+@njit_inner
 def qbetween(a: Vec, b: Vec) -> Quat:
     """Return the shortest turn from unit vector a to unit vector b."""
     w = 1.0 + dot(a, b)
@@ -110,7 +110,7 @@ def qbetween(a: Vec, b: Vec) -> Quat:
     return qunit((w, c[0], c[1], c[2]))
 
 
-@inner_kernel
+@njit_inner
 def qframe(x: Vec, y: Vec, z: Vec) -> Quat:
     """Return the rotation whose matrix has the orthonormal columns x, y, z."""
     trace = x[0] + y[1] + z[2]
@@ -127,7 +127,7 @@ def qframe(x: Vec, y: Vec, z: Vec) -> Quat:
     return ((x[1] - y[0]) / s, (z[0] + x[2]) / s, (z[1] + y[2]) / s, s / 4.0)
 
 
-@inner_kernel
+@njit_inner
 def limb(upper: Vec, lower: Vec, hinge: Vec, reach: Vec, pole: Vec, most: float) -> tuple[Quat, Quat]:
     """Solve a two-bone limb in closed form.
 
@@ -205,12 +205,12 @@ def _deepest(
         out[f] = max(out[f], -min(left, right))
 
 
-@inner_kernel
+@njit_inner
 def vec(a: Array) -> Vec:
     return (a[0], a[1], a[2])
 
 
-@inner_kernel
+@njit_inner
 def _gap(line: tuple[Vec, Vec, Vec, Vec], radii: tuple[float, float, float, float], part: float) -> float:
     """Return the gap between the second cone and the sphere that is `part` of the way along the first cone."""
     a, b, c, d = line

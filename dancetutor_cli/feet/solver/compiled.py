@@ -71,11 +71,7 @@ def runs_as_python() -> bool:
     return is_interpreted() or os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
 
 
-def inner_kernel(function: Any = None, **options: Any) -> Any:
-    """Make a kernel that other kernels call. Python can call it as a plain function."""
-    if function is None:
-        return lambda later: native.inner_kernel(later, **options)
-    return native.inner_kernel(function, **options)
+inner_kernel = native.native_inner  # the decorator of the solver's kernels that other kernels call
 
 
 def kernel(function: Any, results: int = 0) -> Callable[..., Any]:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.run.kernels.compiling import inner_kernel, int32, njit, uint32
+from dancetutor_cli.run.kernels.compiling import int32, njit, njit_inner, uint32
 
 # Weights of red, green and blue in 1/65536: BT.709, luma 16..235 and chroma 16..240 of 255.
 _KR, _KB = 0.2126, 0.0722
@@ -27,7 +27,7 @@ _Y_BIAS = (16 << 16) + (1 << 15)
 _C_BIAS = (128 << 18) + (1 << 17)  # chroma is a sum over four pixels
 
 
-@inner_kernel
+@njit_inner
 def _luma(flat: Any, out: Any) -> None:  # pragma: no cover
     """Convert pixels to luma. The function is separate and simple so that the compiler makes vector code of it."""
     for i in range(out.shape[0]):
@@ -35,7 +35,7 @@ def _luma(flat: Any, out: Any) -> None:  # pragma: no cover
         out[i] = (uint32(_Y0) * r + uint32(_Y1) * g + uint32(_Y2) * b + uint32(_Y_BIAS)) >> uint32(16)
 
 
-@inner_kernel
+@njit_inner
 def _chroma(upper: Any, lower: Any, us: Any, vs: Any) -> None:  # pragma: no cover
     """Convert two rows of pixels to a row of chroma."""
     for i in range(us.shape[0]):

@@ -84,7 +84,7 @@ def njit(*, cache: bool = False, counted: bool = True, **options: Any) -> Callab
     return compiled
 
 
-def inner_kernel(function: F) -> F:
+def njit_inner(function: F) -> F:
     """Return a kernel that only kernels call; a call from Python would crash.
 
     It is compiled into each kernel that calls it, and those are stored. tests/run/test_run_kernels.py finds calls from

@@ -12,6 +12,7 @@ import ctypes
 import json
 from collections.abc import Callable, Iterable
 from contextlib import suppress
+from functools import partial
 from operator import index
 from pathlib import Path
 from threading import Lock
@@ -35,8 +36,13 @@ F = TypeVar("F", bound=Callable[..., Any])
 Kind = tuple[np.dtype[Any], int] | None  # type and dimensions of an array, row by row; None: a whole number
 
 
-def inner_kernel(function: F, **options: Any) -> F:
-    """Mark a kernel that other kernels call; Python calls it as an ordinary function. options : numba's"""
+def native_inner(function: Any = None, **options: Any) -> Any:
+    """Mark a kernel that other kernels call; Python calls it as an ordinary function. options : numba's
+
+    It is a decorator, `@native_inner` or `@native_inner(inline="always")`.
+    """
+    if function is None:
+        return partial(native_inner, **options)
     INNER_KERNELS[function] = options
     return function
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.dance.units import Array
-from dancetutor_cli.film.scene.cpu.raster import kernel
+from dancetutor_cli.film.scene.cpu.raster import njit_raster
 from dancetutor_cli.film.scene.cpu.standing import SEVERAL, TILE, quantise
 from dancetutor_cli.film.scene.renderer import (
     BLUE,
@@ -27,7 +27,7 @@ from dancetutor_cli.film.scene.renderer import (
     TOE_Z,
     Cast,
 )
-from dancetutor_cli.run.kernels.compiling import inner_kernel, njit
+from dancetutor_cli.run.kernels.compiling import njit, njit_inner
 
 # Half a ring's width in the air, its change for a standing foot; the ring's distance from the sole, its change; metres.
 RING = (0.0040, 0.0060, 0.0220, -0.0090)
@@ -166,7 +166,7 @@ def _is_lit(panel: int, lit: Any) -> bool:  # pragma: no cover
     return most > 0.0
 
 
-@inner_kernel
+@njit_inner
 def _shaded(low: Any, high: Any, shade: Any) -> bool:  # pragma: no cover
     """Whether the shadow may fall into the box between two corners."""
     left, top, right, bottom = shade.part
@@ -181,7 +181,7 @@ def _shaded(low: Any, high: Any, shade: Any) -> bool:  # pragma: no cover
     return True
 
 
-@inner_kernel
+@njit_inner
 def _trodden(low: Any, high: Any, coarse: float, live: Any) -> bool:  # pragma: no cover
     """Whether the marks of a foot may fall into the box between two corners.
 
@@ -202,7 +202,7 @@ def _trodden(low: Any, high: Any, coarse: float, live: Any) -> bool:  # pragma: 
     return False
 
 
-@inner_kernel
+@njit_inner
 def _touched(tiles: Any, row: int, column: int, shade: Any, live: Any) -> int:  # pragma: no cover
     """Return the number of feet to check for a tile, or -1 if no light, shadow or foot changes any of its pixels."""
     low, high = tiles.low[row, column], tiles.high[row, column]
@@ -214,7 +214,7 @@ def _touched(tiles: Any, row: int, column: int, shade: Any, live: Any) -> int:  
     return 0 if lit or (shade.dark > 0.0 and _shaded(low, high, shade)) else -1
 
 
-@kernel
+@njit_raster
 def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live: Any) -> None:  # pragma: no cover
     """Redraw the pixels of `box` (x0, y0, x1, y1) with light, shadow or a mark, tile by tile.
 

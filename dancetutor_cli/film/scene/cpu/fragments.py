@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.film.scene.cpu.raster import inner_kernel
+from dancetutor_cli.film.scene.cpu.raster import njit_raster_inner
 from dancetutor_cli.film.scene.geometry import LEVELS
 from dancetutor_cli.film.scene.look import ToonLook
 from dancetutor_cli.run.kernels.compiling import float32, int32, njit, uint64
@@ -105,7 +105,7 @@ def empty_fragments() -> Fragments:
     )
 
 
-@inner_kernel
+@njit_raster_inner
 def _interpolate(count: int, some: Any, triangles: Any, surface: Any, light: Any) -> None:  # pragma: no cover
     """Gather the data of triangles and meshes.
 
@@ -152,7 +152,7 @@ def _interpolate(count: int, some: Any, triangles: Any, surface: Any, light: Any
         places[_FIRST + i], places[_WIDTH + i], places[_TALL + i] = first, width, tall
 
 
-@inner_kernel
+@njit_raster_inner
 def _shadowed(count: int, some: Any, light: Any) -> None:  # pragma: no cover
     """Fill the row of the sun by nine comparisons, as the mean over two by two texels; 1 outside of the map.
 
@@ -189,7 +189,7 @@ def _step(t: Any) -> Any:  # pragma: no cover
     return t * t * (float32(3.0) - float32(2.0) * t)
 
 
-@inner_kernel
+@njit_raster_inner
 def _toon_light(count: int, rows: Any, toon: Any) -> None:  # pragma: no cover
     """Fill the rows of the toon light."""
     half_from, full_from, steep, limbs = toon[_BANDS], toon[_BANDS + 1], toon[_STEEP], toon[_LIMBS]
@@ -208,7 +208,7 @@ def _toon_light(count: int, rows: Any, toon: Any) -> None:  # pragma: no cover
         rows[_HALF_LIGHT + i], rows[_LEVEL + i], rows[_EDGE + i] = half, level, rim
 
 
-@inner_kernel
+@njit_raster_inner
 def _texel_places(count: int, rows: Any, places: Any) -> None:  # pragma: no cover
     """Fill the indices and weights of four texels, of a texture that repeats."""
     for n in range(count):
@@ -235,7 +235,7 @@ def _texel_places(count: int, rows: Any, places: Any) -> None:  # pragma: no cov
         rows[_LOWER_LEFT + i], rows[_LOWER_RIGHT + i] = (_ONE - fx) * fy, fx * fy
 
 
-@inner_kernel
+@njit_raster_inner
 def _fetch(count: int, places: Any, texels: Any) -> None:  # pragma: no cover
     """Replace the indices of the four texels by the texels."""
     for n in range(count):
@@ -250,7 +250,7 @@ def _channel(texel: Any, shift: Any) -> Any:  # pragma: no cover
     return float32((texel >> shift) & int32(255))
 
 
-@inner_kernel
+@njit_raster_inner
 def _lit(count: int, rows: Any, places: Any, toon: Any) -> None:  # pragma: no cover
     """Fill the colours from the texture, interpolated and lit."""
     shade_red, shade_green, shade_blue = toon[_SHADE], toon[_SHADE + 1], toon[_SHADE + 2]
@@ -273,7 +273,7 @@ def _lit(count: int, rows: Any, places: Any, toon: Any) -> None:  # pragma: no c
         rows[BLUE + i] = min(blue + (_ONE - blue) * rim, _ONE)
 
 
-@inner_kernel
+@njit_raster_inner
 def colour(count: int, some: Any, triangles: Any, surface: Any, light: Any) -> None:  # pragma: no cover
     """Fill the colours of the first `count` places of `Fragments`, which have triangles, spots and shares."""
     _interpolate(count, some, triangles, surface, light)

@@ -12,8 +12,8 @@ from dancetutor_cli.run.kernels.compiling import float32, njit, uint64
 # The slow kernels are compiled without counts of references to arrays, which saves `shade.resolve` a quarter of its
 # time. A division by 0 is not an error in them, because a check prevents vector code.
 
-kernel = njit(cache=True, counted=False, error_model="numpy")
-inner_kernel = njit(counted=False, error_model="numpy", no_cpython_wrapper=True)  # only kernels call it
+njit_raster = njit(cache=True, counted=False, error_model="numpy")
+njit_raster_inner = njit(counted=False, error_model="numpy", no_cpython_wrapper=True)  # only kernels call it
 
 # Places on the picture are snapped to 1/16 sample, so that edge functions are exact in double precision: two triangles
 # that share an edge leave no gap, and the covered samples are the same on every machine.
@@ -199,7 +199,7 @@ def _fine(value: float) -> int:  # pragma: no cover
     return int(min(max(value, -_STEEP), _STEEP) * _FINE)
 
 
-@kernel
+@njit_raster
 def fill(points: Any, triangles: Any, keep: int, offset: int, canvas: Any) -> None:  # pragma: no cover
     """Draw triangles on a `Canvas`, each with its number + `offset` + 1.
 
@@ -287,7 +287,7 @@ def note_least(canvas: Any) -> None:  # pragma: no cover
             least[band, block] = lowest >> 32
 
 
-@kernel
+@njit_raster
 def fill_depth(points: Any, triangles: Any, depth: Any) -> None:  # pragma: no cover
     """Draw the depth of triangles that face the light, for the shadow map, as `fill` does."""
     height, width = depth.shape

@@ -30,7 +30,7 @@ from dancetutor_cli.film.scene.cpu.fragments import (
     colour,
     empty_fragments,
 )
-from dancetutor_cli.film.scene.cpu.raster import BAND, Canvas, inner_kernel, kernel
+from dancetutor_cli.film.scene.cpu.raster import BAND, Canvas, njit_raster, njit_raster_inner
 from dancetutor_cli.run.kernels.compiling import float32, njit, uint64
 
 _CLOSE = 0.006  # greatest difference of depth, as a share of the depth, of samples with one colour
@@ -115,7 +115,7 @@ def _one_piece(keys: Any, row: int, column: int, samples: int, triangles: Any) -
     return True
 
 
-@inner_kernel
+@njit_raster_inner
 def _put(out: Any, pixels: int, count: int, room: Any) -> None:  # pragma: no cover
     """Add the fragments' colours to their pixels, and write the pixels to the picture."""
     some, total = room.fragments, room.sum
@@ -139,7 +139,7 @@ def _put(out: Any, pixels: int, count: int, room: Any) -> None:  # pragma: no co
             out[row, column, k] = int(total[p, k] + half)
 
 
-@kernel
+@njit_raster
 def resolve(out: Any, samples: int, drawn: Any, surface: Any, light: Any, room: Any) -> None:  # pragma: no cover
     """Draw the samples on the picture and clear the canvas.
 
