@@ -25,6 +25,10 @@ class Limb(IntEnum):
     UNPLAYED = -2
 
 
+NAMES = ("left foot", "right foot", "left hand", "right hand")  # by `Limb`
+LABELS = tuple(name.replace(" ", "-") for name in NAMES)  # their labels in configs/languages
+
+
 class Part(IntEnum):
     """The part of a foot; only brackets (one foot on two panels) distinguish the heel from the toe."""
 

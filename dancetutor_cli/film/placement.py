@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from dancetutor_cli.feet.limbs import LABELS
 from dancetutor_cli.film.clock import Moment, Pass
 from dancetutor_cli.film.layout import WIDE_PAD, Layout, PixelBox, lowered, overlap
 from dancetutor_cli.film.notes import Callout, Presses
@@ -21,7 +22,6 @@ from dancetutor_cli.film.overlay.announce import Calls, Runs
 from dancetutor_cli.film.overlay.captions import Legend, LegendWords
 from dancetutor_cli.film.overlay.header import Header, WordsRoom
 from dancetutor_cli.film.overlay.marks import visible_limbs
-from dancetutor_cli.film.words import LIMBS
 
 if TYPE_CHECKING:
     from dancetutor_cli.film.overlay.sprites import WordStyle
@@ -136,7 +136,7 @@ def _legend(
         under = lowered(box, feet[3] + LEGEND_OFF * boxes.scale)
         box = under if under[3] <= boxes.size[1] else box  # a user's own layout may leave no room there
     explained = LegendWords(
-        {limb: style.language.limbs[LIMBS[limb]] for limb in shown},
+        {limb: style.language.limbs[LABELS[limb]] for limb in shown},
         words["facing"] if turned and not boxes.layout.highway else "",
         [(words["player"].replace("{number}", str(n)), colour) for n, colour in enumerate(players, 1)],
     )

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from dancetutor_cli.feet.limbs import LABELS
 from dancetutor_cli.run.errors import FileError, choose_text
 
 if TYPE_CHECKING:
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
 
 
 HOLD, MINE = "hold", "mine"  # a hold, and a mine under a foot; `EVENTS` does not have them, nor half turns
-LIMBS = ("left-foot", "right-foot", "left-hand", "right-hand")  # labels of a language, by `feet.limbs.Limb`
 IMPLIED_BY_BRACKET = {"doublestep", "forced-doublestep"}  # not named, because a bracket's words already name the foot
 _OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up"}
 
@@ -47,7 +47,7 @@ def filled(words: str, name: str, at: tuple[Play, int], view: PanelNames) -> lis
     for who in _doers(name, limbs):
         heel = int(play.feet[row, who]) if 0 <= who < 2 else -1
         columns = [column for column, limb in enumerate(limbs) if limb == who]
-        film, limb = view.language.film, view.language.limbs[LIMBS[who] if who >= 0 else "foot"]
+        film, limb = view.language.film, view.language.limbs[LABELS[who] if who >= 0 else "foot"]
         parts = sorted((column != heel, view.name(column)) for column in columns)
         places = ", ".join(film["toe" if toe else "heel"].replace("{panel}", panel) for toe, panel in parts)
         texts.append(words.replace("{who}", limb).replace("{places}", places))

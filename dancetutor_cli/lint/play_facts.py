@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.chart.timing import Timing
-from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.limbs import NAMES
 from dancetutor_cli.feet.play import StepKind
 from dancetutor_cli.lint.candidates import Candidates
 from dancetutor_cli.lint.plays import CROSSED, EPSILON, PlayedSteps
@@ -22,8 +22,6 @@ _BETWEEN = 2  # most sure rows between two unsure rows of one passage
 WALL = 3  # the least number of mines in a wall
 HARDLY = 0.15  # seconds; a foot cannot leave its panel so soon after its step
 _HOLD, _ROLL_TAP = int(StepKind.HOLD), int(StepKind.ROLL_TAP)
-_LIMB_NAMES = {Limb.LEFT_FOOT: "left foot", Limb.RIGHT_FOOT: "right foot", Limb.LEFT_HAND: "left hand",
-               Limb.RIGHT_HAND: "right hand"}  # fmt: skip
 
 
 T = TypeVar("T")
@@ -73,7 +71,8 @@ class PlayFacts:
 
     def limb_name(self, row: int, column: int) -> str:
         """Return the name of the limb that presses a cell: "left foot", "right hand" ..."""
-        return _LIMB_NAMES.get(Limb(int(self._play.limb[row, column])), "limb")
+        limb = int(self._play.limb[row, column])
+        return NAMES[limb] if limb >= 0 else "limb"
 
     @cached_property
     def down(self) -> NDArray[np.int64]:

@@ -19,8 +19,8 @@ from dancetutor_cli.feet.solver.techniques import moves_and_turns
 from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.film.scene.geometry import ABOVE, PackedMeshes, pack
 from dancetutor_cli.film.scene.props import JOINT, bar_matrix, with_bar
-from dancetutor_cli.film.scene.renderer import RING_SHARE, SHADOW_FADE
 from dancetutor_cli.film.scene.scene import PANEL, SOLE_RADIUS, TOE_AHEAD, Scene
+from dancetutor_cli.film.scene.shared import RING_SHARE, SHADOW_FADE
 from dancetutor_cli.formats.key_times import joint_groups, reaches
 from dancetutor_cli.page.document import Blob
 from dancetutor_cli.run.languages import load_language

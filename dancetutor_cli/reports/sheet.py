@@ -12,6 +12,7 @@ import numpy as np
 
 from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
+from dancetutor_cli.feet.limbs import LABELS
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.reports.moments import clock, moment
@@ -25,7 +26,7 @@ from dancetutor_cli.run.languages import ENGLISH
 _LEFT = 12.0
 _FACTS, _FACT = 66.0, 14.0  # y of the first line of facts, and the spacing of these lines
 _GAP = 22.0
-_LIMBS = ("left-foot", "right-foot", "left-hand", "right-hand", "none")  # labels of a language
+_LIMBS = (*LABELS, "none")  # labels of a language
 _LONG_LIST = 24  # more findings than these are listed in two columns
 _FONT = "system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
 

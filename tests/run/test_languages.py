@@ -10,11 +10,12 @@ import yaml
 from click.testing import CliRunner
 
 from dancetutor_cli.commands import cli
+from dancetutor_cli.feet.limbs import LABELS
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.film.overlay import text
 from dancetutor_cli.film.overlay.phrases import BACK, FRONT, JUMP
-from dancetutor_cli.film.words import HOLD, LIMBS, MINE
+from dancetutor_cli.film.words import HOLD, MINE
 from dancetutor_cli.lint.rule import all_rules
 from dancetutor_cli.run.errors import FileError, UnavailableError, UsageError
 from dancetutor_cli.run.languages import load_language
@@ -66,7 +67,7 @@ def test_every_move_rule_panel_and_limb_has_words(name: str) -> None:
     pads = yaml.safe_load(config_path("pads.yaml").read_text("utf-8")).values()
     panels = {re.sub(r"-\d+$", "", panel) for pad in pads for panel, *_ in pad["panels"]}
     assert panels == set(language.panels)
-    assert {*LIMBS, *(f"{limb}-short" for limb in LIMBS), "foot", "none"} == set(language.limbs)
+    assert {*LABELS, *(f"{limb}-short" for limb in LABELS), "foot", "none"} == set(language.limbs)
 
 
 def test_no_label_is_unused() -> None:

@@ -16,6 +16,7 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import sole_points, world_transforms
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array, Poses
+from dancetutor_cli.feet.limbs import NAMES
 from dancetutor_cli.run.errors import UsageError, choose_text
 
 if TYPE_CHECKING:
@@ -326,9 +327,8 @@ def without(motion: Motion, missed: Sequence[Contact], note: str, at: float) -> 
     started = {id(c) for c in missed if c.start < at}
     gone = {id(c) for c in missed} - started
     kept = tuple(c for c in motion.contacts if id(c) not in gone)
-    names = ("left foot", "right foot", "left hand", "right hand")
     which = ", ".join(
-        f"{c.start:.3f} s column {c.column} ({names[c.limb]}{', held' if id(c) in started else ''})" for c in missed
+        f"{c.start:.3f} s column {c.column} ({NAMES[c.limb]}{', held' if id(c) in started else ''})" for c in missed
     )
     tail = f"; missed: {which}" if missed else "; no note is missed"
     return replace(motion, contacts=kept, notes=(*motion.notes, note + tail))

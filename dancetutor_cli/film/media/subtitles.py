@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.limbs import LABELS, Limb
 from dancetutor_cli.feet.move_spans import CROSSED, FULL, crossover_spans, spans
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS, moves_and_turns
 from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.notes import Cue
-from dancetutor_cli.film.words import HOLD, IMPLIED_BY_BRACKET, LIMBS, PanelNames, filled, move_words
+from dancetutor_cli.film.words import HOLD, IMPLIED_BY_BRACKET, PanelNames, filled, move_words
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.languages import Language, load_language
 from dancetutor_cli.run.reading import config_path
@@ -86,17 +86,17 @@ def _holds(play: Play, timing: Timing, words: Mapping[str, str], language: Langu
     ends = timing.seconds(play.rows.hold_end[row, column])
     for r, c, end in zip(row.tolist(), column.tolist(), ends.tolist(), strict=True):
         limb = int(play.limb[r, c])
-        who = (language.limbs[LIMBS[limb]],) if 0 <= limb < len(LIMBS) else ()
+        who = (language.limbs[LABELS[limb]],) if 0 <= limb < len(LABELS) else ()
         yield Cue(float(play.rows.second[r]), end, words[HOLD], who, HOLD)
 
 
 def _limb_names(play: Play, row: int, language: Language) -> tuple[str, ...]:
     """Return the names of the limbs that step in a row; none for a move of both feet."""
-    limbs = {limb for limb in play.limb[row].tolist() if 0 <= limb < len(LIMBS)}
+    limbs = {limb for limb in play.limb[row].tolist() if 0 <= limb < len(LABELS)}
     return (
         ()
         if {Limb.LEFT_FOOT, Limb.RIGHT_FOOT} <= limbs
-        else tuple(language.limbs[LIMBS[limb]] for limb in sorted(limbs))
+        else tuple(language.limbs[LABELS[limb]] for limb in sorted(limbs))
     )
 
 

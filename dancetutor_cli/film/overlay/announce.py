@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from dancetutor_cli.feet.limbs import limb_colours
+from dancetutor_cli.feet.limbs import LABELS, limb_colours
 from dancetutor_cli.film.clock import Clock
 from dancetutor_cli.film.layout import PixelBox
 from dancetutor_cli.film.notes import Callout
@@ -17,7 +17,6 @@ from dancetutor_cli.film.overlay.captions import SOFT, WHITE, box_of
 from dancetutor_cli.film.overlay.sprites import FLAG_EDGE, WordStyle, flag, flag_height
 from dancetutor_cli.film.overlay.text import Typeface, fitted, wrapped
 from dancetutor_cli.film.picture import Frame
-from dancetutor_cli.film.words import LIMBS
 from dancetutor_cli.run.languages import Language
 from dancetutor_cli.run.schema import RGB
 
@@ -96,7 +95,7 @@ def _phrases(
     """
     width, height = room
     named = text
-    for limb in LIMBS:
+    for limb in LABELS:
         named = named.replace(f"{language.limbs[limb]}:", f"{language.limbs[f'{limb}-short']}:")
     tries = [(text, CALL_LEAST), (named, CALL_LEAST), (text, CALL_SMALL)]
     if short and text.endswith(short):
@@ -133,7 +132,7 @@ def _parts(text: str, ends: str) -> list[str]:
 
 def _foot_colour(text: str, language: Language) -> RGB | None:
     """Return the colour of the foot that a call names; None if it names both feet or no foot."""
-    named = [foot for foot in range(2) if language.limbs[LIMBS[foot]] in text]
+    named = [foot for foot in range(2) if language.limbs[LABELS[foot]] in text]
     return limb_colours().by_limb[named[0]] if len(named) == 1 else None
 
 

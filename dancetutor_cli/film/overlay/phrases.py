@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dancetutor_cli.film.words import LIMBS, short_words
+from dancetutor_cli.feet.limbs import LABELS
+from dancetutor_cli.film.words import short_words
 
 if TYPE_CHECKING:
     from dancetutor_cli.feet.pads import Pad
@@ -59,7 +60,7 @@ def stepped_phrase(move: str, name: str, limbs: list[int], language: Language) -
     text = language.calls.get(name)
     if text is None or len(feet) != 1:
         return plain(move)
-    return Phrase(move, text.replace("{who}", language.limbs[LIMBS[feet.pop()]]), short_words(move))
+    return Phrase(move, text.replace("{who}", language.limbs[LABELS[feet.pop()]]), short_words(move))
 
 
 def crossing_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Language) -> Phrase:
@@ -82,7 +83,7 @@ def crossing_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Languag
         if not feet or not names:
             return plain(move)
         (foot,), name = feet, names[0]
-    who, other = language.limbs[LIMBS[foot]], language.limbs[LIMBS[1 - foot]]
+    who, other = language.limbs[LABELS[foot]], language.limbs[LABELS[1 - foot]]
     reason = "" if name == JUMP else _reason(play, row, foot)
     why = calls[reason].replace("{other}", other) if reason else ""
     return Phrase(move, calls[name].replace("{who}", who), calls[f"{name}-tag"], why, calls["several"])
@@ -106,9 +107,9 @@ def turning_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Language
     foot = feet[0] if len(feet) == 1 else int(np.argmax(ahead))
     over = float(ahead[foot] - ahead[1 - foot])
     name = TURN_FRONT if over > 0 else TURN_BEHIND if over < 0 else TURN_ROUND
-    where = calls[name].replace("{who}", language.limbs[LIMBS[foot]])
+    where = calls[name].replace("{who}", language.limbs[LABELS[foot]])
     reason = _reason(play, row, foot) if len(feet) == 1 else ""
-    why = calls[reason].replace("{other}", language.limbs[LIMBS[1 - foot]]) if reason else ""
+    why = calls[reason].replace("{other}", language.limbs[LABELS[1 - foot]]) if reason else ""
     return Phrase(move, f"{move}, {where}", short_words(move), why, calls["several"].replace("{said}", where))
 
 

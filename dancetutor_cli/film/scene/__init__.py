@@ -4,5 +4,5 @@ scene, look                   the still scene and the state of one frame; their 
 dancer, visibility            the dancer's state at a moment; her hidden parts
 camera, follow                the cameras; a camera that follows her across a wide pad
 geometry, props               meshes as flat arrays; bar and screen
-renderer                      the interface of both renderers, the choice, and their common computations
+renderer, shared              the interface of both renderers and the choice; their common computations
 """

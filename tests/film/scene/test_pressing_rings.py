@@ -10,8 +10,8 @@ import renderers_scene as rs
 
 from dancetutor_cli.film.scene import renderer
 from dancetutor_cli.film.scene.gl import available
-from dancetutor_cli.film.scene.renderer import RING_SHARE, feet_on_floor
 from dancetutor_cli.film.scene.scene import PANEL, foot_marks
+from dancetutor_cli.film.scene.shared import RING_SHARE, feet_on_floor
 from dancetutor_cli.run.errors import UnavailableError
 
 SIZE = (320, 320)

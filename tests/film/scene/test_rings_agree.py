@@ -7,7 +7,7 @@ import re
 import pytest
 
 from dancetutor_cli.film.scene.cpu.floor import LIT, RING
-from dancetutor_cli.film.scene.renderer import _UNDER, PLANTED, _strength
+from dancetutor_cli.film.scene.shared import _UNDER, PLANTED, _strength
 from dancetutor_cli.run.reading import PACKAGE
 
 

@@ -19,8 +19,8 @@ from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.notes import Callout
 from dancetutor_cli.film.overlay.diagram import step_rows
-from dancetutor_cli.film.scene.renderer import HEEL_X, STRENGTH, feet_on_floor
 from dancetutor_cli.film.scene.scene import PANEL, FrameState
+from dancetutor_cli.film.scene.shared import HEEL_X, STRENGTH, feet_on_floor
 from dancetutor_cli.film.work import planning
 from dancetutor_cli.film.work.film_dance import FilmDance, film_dance
 from dancetutor_cli.film.work.planning import _dancers, prepare

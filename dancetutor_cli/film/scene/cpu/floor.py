@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.scene.cpu.raster import njit_raster
 from dancetutor_cli.film.scene.cpu.standing import SEVERAL, TILE, quantise
-from dancetutor_cli.film.scene.renderer import (
+from dancetutor_cli.film.scene.shared import (
     BLUE,
     GREEN,
     GROUND,
@@ -124,7 +124,7 @@ class Shadow(NamedTuple):
 
     mask : float32 (s, s), strength of the shadow; part : texels around the shadow, (left, top, right, bottom)
     cast : place of the shadow map; dark : 0..1, darkness of the whole shadow
-    middles : (2, 2), `renderer.shadow_middles`; far : 0..1, share of the shadow that is left far from them
+    middles : (2, 2), `shared.shadow_middles`; far : 0..1, share of the shadow that is left far from them
     """
 
     mask: NDArray[np.float32]
@@ -146,7 +146,7 @@ def _left_of_shadow(x: float, z: float, middles: Any, far: float) -> float:  # p
 class Live(NamedTuple):
     """The parts of the floor that change from frame to frame.
 
-    lit, lit_colour : `renderer.panel_lights`; feet : `renderer.feet_on_floor`
+    lit, lit_colour : `shared.panel_lights`; feet : `shared.feet_on_floor`
     numbers : indexed by `CONTACT_DARK` and the constants after it
     """
 

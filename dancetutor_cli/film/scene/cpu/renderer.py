@@ -30,7 +30,8 @@ from dancetutor_cli.film.scene.cpu.raster import (
 from dancetutor_cli.film.scene.cpu.shade import RasterResult, empty_room, light_vertices, resolve
 from dancetutor_cli.film.scene.cpu.standing import Background, draw_background
 from dancetutor_cli.film.scene.geometry import pack
-from dancetutor_cli.film.scene.renderer import (
+from dancetutor_cli.film.scene.scene import SOLE_RADIUS, FrameState, Scene, check_state
+from dancetutor_cli.film.scene.shared import (
     SAMPLES,
     SHADOW_MAP,
     Cast,
@@ -45,7 +46,6 @@ from dancetutor_cli.film.scene.renderer import (
     shadow_middles,
     skin_matrices,
 )
-from dancetutor_cli.film.scene.scene import SOLE_RADIUS, FrameState, Scene, check_state
 
 
 class CpuRenderer:

@@ -71,7 +71,7 @@ def empty_room(samples: int) -> Room:
 def light_vertices(world: Any, points: Any, surface: Any, eye: Any, cast: Any, out: Any) -> None:  # pragma: no cover
     """Compute the numbers that are interpolated over a triangle, out float32 (v, 16).
 
-    world (v, 9), points (v, 3) : from `raster`; cast : `renderer.Cast`
+    world (v, 9), points (v, 3) : from `raster`; cast : `shared.Cast`
     """
     uv, above, material = surface.uv, surface.above, surface.material
     axes, origin, scale = cast.axes, cast.origin, cast.scale

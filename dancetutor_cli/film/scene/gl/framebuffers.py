@@ -12,8 +12,8 @@ from OpenGL import GL
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.scene.camera import Camera
 from dancetutor_cli.film.scene.cpu.standing import SEVERAL, TILE, GroundTiles, draw_background
-from dancetutor_cli.film.scene.renderer import GROUND, NEARNESS
 from dancetutor_cli.film.scene.scene import Scene
+from dancetutor_cli.film.scene.shared import GROUND, NEARNESS
 
 # Textures and framebuffers of the OpenGL renderer. Import only after `available.load_pyrender`.
 
@@ -167,9 +167,9 @@ def has_ground(tiles: GroundTiles) -> NDArray[np.bool_]:
 
 
 def shaded(tiles: GroundTiles, light: Array, part: Array, spread: float) -> NDArray[np.bool_]:
-    """Return whether the shadow may fall on each tile (t, u). light : `film.scene.renderer.light_matrix`
+    """Return whether the shadow may fall on each tile (t, u). light : `film.scene.gl.matrices.light_matrix`
 
-    part : `film.scene.renderer.within`; spread : distance of the shadow's taps, as a share of the map
+    part : `film.scene.gl.matrices.within`; spread : distance of the shadow's taps, as a share of the map
     """
     out = np.ones(tiles.panel.shape, dtype=bool)
     for axis in (0, 1):
@@ -186,7 +186,7 @@ def shaded(tiles: GroundTiles, light: Array, part: Array, spread: float) -> NDAr
 def trodden(tiles: GroundTiles, feet: Array, far: float) -> NDArray[np.bool_]:
     """Return whether the marks of a foot may fall on each tile.
 
-    feet : `renderer.feet_on_floor`; far : reach from the line between heel and toe, metres, without the size of pixels
+    feet : `shared.feet_on_floor`; far : reach from the line between heel and toe, metres, without the size of pixels
     """
     out = np.zeros(tiles.panel.shape, dtype=bool)
     reach = far + tiles.coarse

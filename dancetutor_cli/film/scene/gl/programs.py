@@ -15,7 +15,7 @@ from pyrender.shader_program import ShaderProgram, ShaderProgramCache
 
 from dancetutor_cli.film.scene.geometry import PackedMeshes
 from dancetutor_cli.film.scene.gl.available import SHADERS
-from dancetutor_cli.film.scene.renderer import DancerVisibility
+from dancetutor_cli.film.scene.shared import DancerVisibility
 
 # pyrender's shader programs with the project's shaders, with one look-up of each uniform, and with error checks.
 #

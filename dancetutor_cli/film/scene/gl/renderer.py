@@ -34,6 +34,7 @@ from dancetutor_cli.film.scene.gl.framebuffers import (
     texture,
     trodden,
 )
+from dancetutor_cli.film.scene.gl.matrices import camera_matrix, joint_boxes, light_matrix, places_of, within
 from dancetutor_cli.film.scene.gl.programs import (
     Program,
     ProgramCache,
@@ -44,10 +45,11 @@ from dancetutor_cli.film.scene.gl.programs import (
     set_state,
 )
 from dancetutor_cli.film.scene.look import LightLook
-from dancetutor_cli.film.scene.renderer import (
+from dancetutor_cli.film.scene.renderer import MOST_JOINTS
+from dancetutor_cli.film.scene.scene import SOLE_RADIUS, FrameState, Scene, check_state
+from dancetutor_cli.film.scene.shared import (
     BLUE,
     GROUND,
-    MOST_JOINTS,
     NEARNESS,
     PRESSED,
     RED,
@@ -58,22 +60,16 @@ from dancetutor_cli.film.scene.renderer import (
     STRENGTH,
     Cast,
     DancerVisibility,
-    camera_matrix,
     dancer_visibility,
     feet_on_floor,
-    joint_boxes,
     joints_of,
-    light_matrix,
     panel_lights,
     pixel_box,
     pixels_per_metre,
     place_cast,
-    places_of,
     shadow_middles,
     skin_matrices,
-    within,
 )
-from dancetutor_cli.film.scene.scene import SOLE_RADIUS, FrameState, Scene, check_state
 from dancetutor_cli.run.errors import UnavailableError, UsageError
 
 _OFF_SURFACE = (0.012, 0.006)
@@ -84,7 +80,7 @@ _SHADOW_UNIT, _SKIN_UNIT, _FIRST_UNIT = 4, 5, 0
 class _DancerInFrame(NamedTuple):
     """The dancer in one frame. part : her visible part; joints : (j, 4, 4)
 
-    places : `film.scene.renderer.places_of`; cast, light : the place of her shadow map, and its matrix (4, 4)
+    places : `film.scene.gl.matrices.places_of`; cast, light : the place of her shadow map, and its matrix (4, 4)
     """
 
     part: DancerVisibility
