@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
@@ -40,6 +41,7 @@ from dancetutor_cli.run.trust import results_folder
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.analysis import AnalyzeTask
+    from dancetutor_cli.lint.results import FileResult
     from dancetutor_cli.lint.run import LintRequest, LintRun
 
 
@@ -280,13 +282,9 @@ def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO
     tally = Tally(run.fail_on(first), options.exit_zero, quiet=silent)
     pack = PackReport(options, run.has_baseline, len(files), view)
     tasks = [run.task(path, data) for path, data in files]
-    if any(task.settings.sync for task in tasks):
-        from dancetutor_cli.run.ffmpeg import executable
-
-        executable()  # raises an error before the work if there is no ffmpeg, which reads the music
+    _check_ffmpeg(tasks)
     preset = next(tasks[0].presets.candidates()).name
     report = open_report(view, Output(output, preset=preset, files=len(tasks)))
-    least = "warning" if tally.fail_on == "never" else tally.fail_on
     report.begin()
     is_for_several = False
     kept = None if options.no_cache else default_folder()
@@ -298,11 +296,8 @@ def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO
         tally.add(result)
         is_for_several |= any(chart.player for chart in raw.charts)
         pack.add(raw)
-        if options.quiet or (run.has_baseline and options.format_name == "text"):
-            result = result.at_least(least if options.quiet else "info")
-            if not (result.error or result.findings or result.charts):
-                continue
-        report.add(result)
+        if (reported := _reported_part(result, run, options, tally)) is not None:
+            report.add(reported)
     selection = run.request.selection
     none_matches = not tally.charts and not tally.unreadable and bool(tally.unselected or selection.player)
     tally.quiet |= none_matches  # the error is enough
@@ -310,11 +305,9 @@ def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO
     if options.statistics and options.format_name == "text":
         tally.page += tally.statistics()
     report.end(tally)
-    for line in pack.summary_lines(tally) if not options.quiet else ():
-        click.echo(line, err=True)
-    for message in _drawn(tasks, options) if not tally.unreadable else ():
+    for line in chain(pack.summary_lines(tally), _drawn(tasks, options) if not tally.unreadable else ()):
         if not options.quiet:
-            click.echo(message, err=True)
+            click.echo(line, err=True)
     if cache is not None and not options.watch:
         _keep(files)
     _finish(run, tally, options)
@@ -324,6 +317,23 @@ def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO
     if (player := selection.player) is not None and not is_for_several and not options.quiet:
         note(f"--player {player} has no effect: every chart here is for one player")
     return tally.exit_status
+
+
+def _check_ffmpeg(tasks: list[AnalyzeTask]) -> None:
+    """Raise an error before the work if --sync needs ffmpeg, which reads the music, and there is none."""
+    if any(task.settings.sync for task in tasks):
+        from dancetutor_cli.run.ffmpeg import executable
+
+        executable()
+
+
+def _reported_part(result: FileResult, run: LintRun, options: AnalyzeOptions, tally: Tally) -> FileResult | None:
+    """Return the part of a result that is reported: with -q only what makes the run fail; None for nothing."""
+    if not options.quiet and not (run.has_baseline and options.format_name == "text"):
+        return result
+    failing = "warning" if tally.fail_on == "never" else tally.fail_on
+    part = result.at_least(failing if options.quiet else "info")
+    return part if part.error or part.findings or part.charts else None
 
 
 def _drawn(tasks: list[AnalyzeTask], options: AnalyzeOptions) -> Iterator[str]:

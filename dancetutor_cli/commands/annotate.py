@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -19,6 +19,7 @@ from dancetutor_cli.commands.shared_options import (
     into,
     preset_option,
     quiet_option,
+    same_fields,
     selection_options,
     verbose_option,
 )
@@ -48,12 +49,18 @@ def _styles(_: click.Context, __: click.Parameter, value: str | None) -> tuple[s
 
 @dataclass(frozen=True, slots=True)
 class AnnotateOptions:
-    """The options of `annotate`, without those that are fields of `markers.annotate.AnnotateRequest`."""
+    """The options of `annotate` without the selection of charts; see `markers.annotate.AnnotateRequest`."""
 
     styles: tuple[str, ...] | None
+    strip: bool
     check: bool
+    diff: bool
     dry_run: bool
     output: Path | None
+    into_file: bool
+    force: bool
+    backup: bool
+    preset: str | None
     jobs: int | None
     verbose: bool
     quiet: bool
@@ -98,7 +105,7 @@ class AnnotateOptions:
 @selection_options
 @into("selection", Selection)
 @into("options", AnnotateOptions)
-def command(paths: tuple[Path, ...], selection: Selection, options: AnnotateOptions, **given: Any) -> int:
+def command(paths: tuple[Path, ...], selection: Selection, options: AnnotateOptions) -> int:
     """Write L/R foot markers into chart files, or remove them.
 
     PATH is a .sm, .ssc or .ucs file, or a folder with such files. Only comments are added; --strip restores the file
@@ -109,17 +116,19 @@ def command(paths: tuple[Path, ...], selection: Selection, options: AnnotateOpti
     from dancetutor_cli.feet.preset import choice_of
     from dancetutor_cli.markers.annotate import AnnotateRequest
 
-    if not given["strip"] and "background" in (options.styles or ()):
+    if not options.strip and "background" in (options.styles or ()):
         raise UsageError(
             "the kind 'background' is a film: `render --background --into-file` writes it; --strip removes it"
         )
     if selection.player is not None:
         raise UsageError("--player is for analyze, animate, render and page; annotate writes both players' feet")
-    wanted = options.styles or (STRIPPED if given["strip"] else STYLES[:1])
-    if given["into_file"] and "edit" not in wanted:
+    wanted = options.styles or (STRIPPED if options.strip else STYLES[:1])
+    if options.into_file and "edit" not in wanted:
         raise UsageError("--into-file belongs to the markers 'edit'; add --markers edit")
-    writes = not (options.check or given["diff"] or options.dry_run)
-    request = AnnotateRequest(wanted, selection=selection, named=options.styles is not None, write=writes, **given)
+    writes = not (options.check or options.diff or options.dry_run)
+    named = options.styles is not None
+    fields = same_fields(options, AnnotateRequest) | {"styles": wanted}
+    request = AnnotateRequest(**fields, selection=selection, named=named, write=writes)
     files = find_files(paths, options.exclude)
     files = files if options.output is not None else within_folders(paths, files)
     songs = _songs(_items(paths, options.output, files))

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import partial
 
 import click
 from click.shell_completion import CompletionItem
 
-from dancetutor_cli.chart.names import COLUMNS
-from dancetutor_cli.run.reading import config_path
+from dancetutor_cli.chart.names import COLUMNS, DIFFICULTIES
+from dancetutor_cli.run.reading import config_names
 
 _Completer = Callable[[click.Context, click.Parameter, str], list[CompletionItem]]
 
@@ -40,10 +41,7 @@ def fixes() -> Iterable[str]:
 def folder(name: str) -> Callable[[], Iterable[str]]:
     """Return a function that lists the files in a folder of configs, without their suffix."""
 
-    def names() -> Iterable[str]:
-        return [path.stem for path in config_path(name).glob("*.yaml")]
-
-    return names
+    return partial(config_names, name)
 
 
 def steps_types() -> Iterable[str]:
@@ -53,7 +51,7 @@ def steps_types() -> Iterable[str]:
 
 def difficulties() -> Iterable[str]:
     """Return the games' names of difficulties, in lower case."""
-    return ["beginner", "easy", "medium", "hard", "challenge", "edit"]
+    return [name.lower() for name in DIFFICULTIES]
 
 
 def characters() -> Iterable[str]:
