@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +12,7 @@ import click
 from dancetutor_cli.chart.selection import Selection, one_song
 from dancetutor_cli.commands.arguments import GivenPath, warn
 from dancetutor_cli.commands.first_run import announce_compiling
+from dancetutor_cli.commands.folder_run import FolderRun
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.commands.shared_options import (
     DanceOptions,
@@ -27,9 +28,9 @@ from dancetutor_cli.commands.shared_options import (
     verbose_option,
 )
 from dancetutor_cli.reports.joined_warnings import JoinedWarnings
-from dancetutor_cli.reports.terminal import failures_table, safe, safe_path
-from dancetutor_cli.run.errors import DancetutorError, UsageError, plural
-from dancetutor_cli.run.files import check_file, check_folder, make_folder, plain_name, write_atomic
+from dancetutor_cli.reports.terminal import safe, safe_path
+from dancetutor_cli.run.errors import UsageError, plural
+from dancetutor_cli.run.files import check_file, check_folder, plain_name, write_atomic
 
 if TYPE_CHECKING:
     from dancetutor_cli.page.work import PageRequest
@@ -143,26 +144,20 @@ def _pages(request: PageRequest, folder: Path, options: PageOptions) -> None:
     if request.dance.play is not None:
         raise UsageError(f"--play is for one chart, and {request.dance.path} is a folder")
     check_folder(folder)
-    wanted, bad = page_jobs(request, folder, options.exclude)
-    if not wanted and not bad:
-        raise UsageError(f"{request.dance.path}: no chart here matches")
-    if not wanted and [path for path, _ in bad] == [request.dance.path]:  # without charts, or unreadable
-        raise DancetutorError(bad[0][1])
-    if wanted:
-        make_folder(folder)
+    wanted, unreadable = page_jobs(request, folder, options.exclude)
+    run = FolderRun(len(wanted), unreadable, JoinedWarnings(every=options.verbose))
+    run.begin(request.dance.path, folder, f"{request.dance.path}: no chart here matches")
     outcomes = {}
-    warnings = JoinedWarnings(every=options.verbose)
     try:
-        for number, one in enumerate(make_all(wanted, options.jobs), 1):
+        for one in make_all(wanted, options.jobs):
             outcomes[one.job.target] = one
-            for warning in one.warnings:
-                warnings.add(one.job.request.dance.path, warning)
+            number = run.add(one.job.request.dance.path, one.warnings)
             if not options.quiet:
                 result = f"FAILED: {one.error}" if one.error else f"{one.size / 1e6:.1f} MB"
-                click.echo(safe(f"[{number}/{len(wanted)}] {one.job.target.name}: {result}"))
+                click.echo(safe(f"{number} {one.job.target.name}: {result}"))
     finally:
-        for line in warnings.lines() if not options.quiet else ():
-            click.echo(line, err=True)
+        if not options.quiet:
+            run.warn(partial(click.echo, err=True))
     ordered = [outcomes[job.target] for job in wanted]
     if wanted:
         write_index(folder, ordered, request.dance.path.resolve().name)
@@ -170,6 +165,4 @@ def _pages(request: PageRequest, folder: Path, options: PageOptions) -> None:
     if wanted and not options.quiet:
         made = len(ordered) - len(failed)
         click.echo(f"{safe_path(str(folder / INDEX))}: {plural(made, 'page')}")
-    if failed or bad:
-        failures_table([*((str(path), "", error) for path, error in bad), *failed])
-        sys.exit(2)
+    run.end(failed)

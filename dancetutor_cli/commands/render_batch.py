@@ -13,18 +13,19 @@ import click
 
 from dancetutor_cli.commands.arguments import LONG, note
 from dancetutor_cli.commands.film_options import RenderOptions, film_request
+from dancetutor_cli.commands.folder_run import FolderRun
 from dancetutor_cli.reports.joined_warnings import JoinedWarnings
 from dancetutor_cli.reports.progress import FilmProgress
-from dancetutor_cli.reports.terminal import failures_table, safe
-from dancetutor_cli.run.errors import DancetutorError, FileError, UsageError
-from dancetutor_cli.run.files import check_file, check_folder, encoded, make_folder
+from dancetutor_cli.reports.terminal import safe
+from dancetutor_cli.run.errors import FileError
+from dancetutor_cli.run.files import check_file, check_folder, encoded
 from dancetutor_cli.run.foreign_text import json_without_commands
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.selection import Selection
     from dancetutor_cli.commands.shared_options import DanceOptions
     from dancetutor_cli.film.choices import RendererKind
-    from dancetutor_cli.film.work.batch import BatchRequest, UnreadableFile
+    from dancetutor_cli.film.work.batch import BatchRequest
     from dancetutor_cli.film.work.jobs import FilmOutcome
     from dancetutor_cli.run.pool import Workers
 
@@ -42,17 +43,12 @@ def render_batch(path: Path, selection: Selection, dance: DanceOptions, options:
     if options.results is not None and str(options.results) != "-":
         check_file(options.results, (".jsonl", ".json"), or_device=True)
     films, unreadable, without = film_list(batch)
-    if not films and not unreadable:
-        raise UsageError(f"{path}: no chart matches{_filters(selection, options)}")
-    if not films and [bad.path for bad in unreadable] == [path]:  # a folder without chart files, or an unreadable one
-        raise DancetutorError(unreadable[0].error)
-    if films:
-        make_folder(batch.folder)
+    run = FolderRun(len(films), unreadable, JoinedWarnings(every=options.verbose))
+    run.begin(path, batch.folder, f"{path}: no chart matches{_filters(selection, options)}")
     records, fault = find_records((path, batch.folder))
     if fault and not options.quiet:
         note(f"a second run will make all films again: {fault}")
     outcomes: list[FilmOutcome] = []
-    warnings = JoinedWarnings(every=options.verbose)
     jobs = options.jobs or default_jobs()
     with ExitStack() as stack:
         results = _open_results(options.results, stack)
@@ -62,14 +58,15 @@ def render_batch(path: Path, selection: Selection, dance: DanceOptions, options:
         progress.begin(0, batch.request.fps)
         workers = _workers(options.scheduler, jobs, progress, batch.request.look.renderer)
         if not options.quiet:
-            stack.callback(_warn, warnings, progress)
+            stack.callback(run.warn, progress.say)
         for outcome in Batch(films, workers, progress.add, records=records).run():
             outcomes.append(outcome)
             _write(results, outcome.as_json())
-            for warning in outcome.warnings:
-                warnings.add(outcome.job.request.path, warning)
-            _tell(outcome, progress, options.quiet, len(outcomes), len(films))
-    _sum_up(outcomes, unreadable, without, options.quiet)
+            _tell(outcome, progress, options.quiet, run.add(outcome.job.request.path, outcome.warnings))
+    failed = [outcome for outcome in outcomes if outcome.status == "failed"]
+    if not options.quiet:
+        click.echo(_summary(outcomes, len(unreadable), len(without)), err=True)
+    run.end([(str(one.job.request.path), one.job.label, str(one.error)) for one in failed])
 
 
 def _batch(path: Path, selection: Selection, dance: DanceOptions, options: RenderOptions) -> BatchRequest:
@@ -125,34 +122,20 @@ def _write(results: TextIO | None, line: dict[str, Any]) -> None:
         results.flush()
 
 
-def _tell(outcome: FilmOutcome, progress: FilmProgress, quiet: bool, number: int, count: int) -> None:
+def _tell(outcome: FilmOutcome, progress: FilmProgress, quiet: bool, number: str) -> None:
     name = outcome.job.output.name
     text = {"done": "done", "skipped": "already exists", "failed": f"FAILED: {outcome.error}"}[outcome.status]
     if not quiet or outcome.status == "failed":
-        progress.say(safe(f"[{number}/{count}] {name} {text}"))
+        progress.say(safe(f"{number} {name} {text}"))
 
 
-def _warn(warnings: JoinedWarnings, progress: FilmProgress) -> None:
-    """Print the warnings of the films so far, even if the run was interrupted."""
-    for line in warnings.lines():
-        progress.say(line)
-
-
-def _sum_up(outcomes: list[FilmOutcome], unreadable: list[UnreadableFile], without: list[Path], quiet: bool) -> None:
-    """Print the summary and the table of failures. Exits with 2 if there are failures."""
+def _summary(outcomes: list[FilmOutcome], unreadable: int, without: int) -> str:
     counts = Counter(outcome.status for outcome in outcomes)
-    failed = [outcome for outcome in outcomes if outcome.status == "failed"]
-    if not quiet:
-        parts = [f"{counts[name]} {name}" for name in ("done", "skipped", "failed") if counts[name]]
-        parts += [f"{len(unreadable)} unreadable"] if unreadable else []
-        if without:
-            parts.append(f"{len(without)} {'songs have' if len(without) > 1 else 'song has'} no such chart")
-        click.echo(", ".join(parts), err=True)
-    if failed or unreadable:
-        rows = [(str(bad.path), "", bad.error) for bad in unreadable]
-        rows += [(str(one.job.request.path), one.job.label, str(one.error)) for one in failed]
-        failures_table(rows)
-        sys.exit(2)
+    parts = [f"{counts[name]} {name}" for name in ("done", "skipped", "failed") if counts[name]]
+    parts += [f"{unreadable} unreadable"] if unreadable else []
+    if without:
+        parts.append(f"{without} {'songs have' if without > 1 else 'song has'} no such chart")
+    return ", ".join(parts)
 
 
 def _filters(selection: Selection, options: RenderOptions) -> str:

@@ -11,8 +11,8 @@ import numpy as np
 
 from dancetutor_cli.character.characters import load_character, name_in_gait
 from dancetutor_cli.character.mesh import with_foot_colours
+from dancetutor_cli.chart.folder_reader import FolderReader, UnreadableFile
 from dancetutor_cli.chart.music import find_music
-from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.motion import Cut, shifted
 from dancetutor_cli.dance.performance import pad_of, perform, play_of_all, playable, pooled, solve
@@ -26,8 +26,8 @@ from dancetutor_cli.feet.solved import solve_song
 from dancetutor_cli.feet.solver.alternatives import alternatives
 from dancetutor_cli.film.scroll import parse_segments
 from dancetutor_cli.page.document import Blob, IndexEntry, document, index_page
-from dancetutor_cli.run.errors import DancetutorError, FileError, NoChartsError, UsageError
-from dancetutor_cli.run.files import write_atomic
+from dancetutor_cli.run.errors import FileError, UsageError
+from dancetutor_cli.run.files import FreeNames, write_atomic
 from dancetutor_cli.run.pool import Task, open_workers
 
 if TYPE_CHECKING:
@@ -316,40 +316,29 @@ class PageOutcome:
 
 
 def page_jobs(
-    request: PageRequest, folder: Path, exclude: Sequence[str] = ()
-) -> tuple[list[PageJob], list[tuple[Path, str]]]:
+    request: PageRequest, target: Path, exclude: Sequence[str] = ()
+) -> tuple[list[PageJob], list[UnreadableFile]]:
     """Return the pages of all matching charts below `request.dance.path`, and the files that cannot be read.
 
     Charts without a pad or without notes are left out. Files are named like the films of a batch.
     """
     from dancetutor_cli.film.overlay.text import clean
-    from dancetutor_cli.film.work.batch import DEFAULT_NAME, chart_files, file_name
+    from dancetutor_cli.film.work.batch import DEFAULT_NAME, file_name
 
     jobs: list[PageJob] = []
-    bad: list[tuple[Path, str]] = []
-    taken = {Path(INDEX).stem}
-    for path in chart_files((request.dance.path,), exclude):
-        try:
-            song = load(path)
-        except NoChartsError:  # the music of a menu, which is not for dancing
-            continue
-        except (DancetutorError, OSError) as error:
-            bad.append((path, str(error)))
-            continue
+    reader = FolderReader((request.dance.path,), exclude)
+    taken = FreeNames(Path(INDEX).stem)
+    for song in reader.songs():
         for chart in request.dance.selection.charts(song):
             if not len(chart.notes) or load_pad(chart.steps_type) is None:
                 continue
-            stem = name = file_name(DEFAULT_NAME, song, chart)
-            number = 2
-            while name.lower() in taken:
-                name, number = f"{stem}-{number}", number + 1
-            taken.add(name.lower())
-            dance = replace(request.dance, path=path, selection=Selection(index=chart.index))
+            name = taken.take(file_name(DEFAULT_NAME, song, chart))
+            dance = replace(request.dance, path=song.path, selection=Selection(index=chart.index))
             entry = IndexEntry(
                 f"{name}.html", clean(song.title) or song.path.stem, clean(song.artist), clean(chart.label)
             )
-            jobs.append(PageJob(replace(request, dance=dance, jobs=1), folder / entry.file, entry))
-    return jobs, bad
+            jobs.append(PageJob(replace(request, dance=dance, jobs=1), target / entry.file, entry))
+    return jobs, reader.unreadable
 
 
 def make_all(jobs: list[PageJob], processes: int) -> Iterator[PageOutcome]:

@@ -351,6 +351,21 @@ def plain_name(text: str) -> str:
     return re.sub(r"[^\w.-]+", "_", text.lower()).strip("._")[:120]
 
 
+class FreeNames:
+    """Names of files in one folder, each given only once; file systems may ignore case."""
+
+    def __init__(self, *taken: str) -> None:
+        self._taken = {name.lower() for name in taken}
+
+    def take(self, stem: str) -> str:
+        """Return the stem, or the first of "STEM-2", "STEM-3" ... that is free."""
+        name, number = stem, 2
+        while name.lower() in self._taken:
+            name, number = f"{stem}-{number}", number + 1
+        self._taken.add(name.lower())
+        return name
+
+
 def check_folder(path: Path) -> None:
     """Raise if this cannot be a writable folder: a file has this path or that of a parent, or writing is not allowed.
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from dancetutor_cli.chart.reader import load
-from dancetutor_cli.chart.selection import Selection, find_files, twin
+from dancetutor_cli.chart.folder_reader import FolderReader, UnreadableFile
+from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.film.media.encoder import Encoding
 from dancetutor_cli.film.media.film_formats import PICTURES
 from dancetutor_cli.film.work import jobs as film_jobs
@@ -21,9 +21,9 @@ from dancetutor_cli.film.work.jobs import ClosedFilm, FilmJob, FilmOutcome, Open
 from dancetutor_cli.film.work.records import FilmRecord, FilmRecords, find_records, new_work_name, remove_work
 from dancetutor_cli.film.work.request import FilmRequest
 from dancetutor_cli.film.work.segments import render_segment
-from dancetutor_cli.run.errors import DancetutorError, FileError, NoChartsError, UsageError, choose_text
+from dancetutor_cli.run.errors import DancetutorError, FileError, UsageError, choose_text
 from dancetutor_cli.run.ffmpeg import EncoderError
-from dancetutor_cli.run.files import plain_name
+from dancetutor_cli.run.files import FreeNames, plain_name
 from dancetutor_cli.run.pool import FinishedWork, Task, Workers, attempt, open_workers
 
 if TYPE_CHECKING:
@@ -54,14 +54,6 @@ class BatchRequest:
     shard: tuple[int, int] = (1, 1)
     longest: float | None = None
     exclude: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class UnreadableFile:
-    """A chart file that cannot be read."""
-
-    path: Path
-    error: str
 
 
 class FilmList(NamedTuple):
@@ -107,32 +99,17 @@ def check_name(template: str) -> None:
 def film_list(batch: BatchRequest) -> FilmList:
     """Return the films of the batch (of this shard), sorted by path; only the first shard has files without a film."""
     check_name(batch.name)
+    reader = FolderReader(batch.paths, batch.exclude)
     jobs: list[FilmJob] = []
-    bad: list[UnreadableFile] = []
     without: list[Path] = []
-    taken: set[str] = set()
-    for path in chart_files(batch.paths, batch.exclude):
-        try:
-            song = load(path)
-        except NoChartsError:  # the music of a menu, which is not for dancing
-            without.append(path)
-            continue
-        except (DancetutorError, OSError) as error:
-            bad.append(UnreadableFile(path, str(error)))
-            continue
+    taken = FreeNames()
+    for song in reader.songs():
         found = [_job(batch, song, chart, taken) for chart in _charts(batch, song)]
         jobs += found
-        without += [] if found else [path]
+        without += [] if found else [song.path]
     number, count = batch.shard
-    return FilmList(jobs[number - 1 :: count], *((bad, without) if number == 1 else ([], [])))
-
-
-def chart_files(paths: Sequence[Path], exclude: Sequence[str] = ()) -> Iterator[Path]:
-    """Yield the chart files; for a song with both kinds the .ssc, as in the games. exclude : as for `find_files`"""
-    for path in find_files(paths, exclude):
-        if path.suffix.lower() == ".sm" and path not in paths and twin(path) is not None:
-            continue
-        yield path
+    rest = (reader.unreadable, reader.without + without) if number == 1 else ([], [])
+    return FilmList(jobs[number - 1 :: count], *rest)
 
 
 def _charts(batch: BatchRequest, song: Song) -> Iterator[Chart]:
@@ -142,13 +119,9 @@ def _charts(batch: BatchRequest, song: Song) -> Iterator[Chart]:
             yield chart
 
 
-def _job(batch: BatchRequest, song: Song, chart: Chart, taken: set[str]) -> FilmJob:
+def _job(batch: BatchRequest, song: Song, chart: Chart, taken: FreeNames) -> FilmJob:
     suffix = "" if batch.encoding.target == PICTURES else f".{batch.encoding.target}"
-    stem = file_name(batch.name, song, chart)
-    name, number = stem, 2
-    while name.lower() in taken:  # two charts have one name; file systems may ignore case
-        name, number = f"{stem}-{number}", number + 1
-    taken.add(name.lower())
+    name = taken.take(file_name(batch.name, song, chart))
     dance = replace(batch.request.dance, path=song.path, selection=Selection(index=chart.index))
     request = replace(batch.request, dance=dance)
     return FilmJob(request, chart.label, batch.folder / f"{name}{suffix}", batch.encoding, batch.longest)
