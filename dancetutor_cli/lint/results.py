@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import time
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, fields, replace
@@ -30,6 +29,7 @@ from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.files import CHART_SUFFIXES, SONG_SUFFIXES
 from dancetutor_cli.run.fingerprint import program_stamp
 from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
+from dancetutor_cli.run.stored_files import DAY, StoredFiles
 from dancetutor_cli.run.trust import results_folder
 
 if TYPE_CHECKING:
@@ -215,14 +215,14 @@ def _alternative(values: list[Any]) -> AlternativeResult:
 # The cache: each result is a small file, named by the hash of everything that the result depends on.
 
 _LARGEST = CHART_LIMIT  # bytes of a kept result
-_KEEP_SECONDS = 30 * 24 * 3600  # a result that is not used for so long is removed
+_LONGEST = 30 * DAY  # a result that is not used for so long is removed
 
 
 class ResultCache:
     """A folder of results in files named by `key`. A file that cannot be read or written is never an error."""
 
     def __init__(self, folder: Path) -> None:
-        self._folder = folder
+        self._files = StoredFiles(folder, longest=_LONGEST)
         self._listings: dict[Path, str] = {}
 
     def key(self, task: AnalyzeTask) -> str | None:
@@ -241,36 +241,16 @@ class ResultCache:
 
     def get(self, key: str) -> FileResult | None:
         """Return the result kept under a key, or None."""
-        path = self._path(key)
-        try:
-            content = read_bytes(path, _LARGEST)
-            if time.time() - path.stat().st_mtime > _KEEP_SECONDS / 2:
-                path.touch()
-        except (FileError, OSError):
-            return None
-        return from_bytes(content, key)
+        content = self._files.read(_name(key), _LARGEST)
+        return None if content is None else from_bytes(content, key)
 
     def put(self, key: str, result: FileResult) -> None:
         """Keep a result under a key."""
-        import tempfile  # here because it takes long and a run on unchanged files does not need it
-
-        path = self._path(key)
-        with suppress(OSError):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            handle, name = tempfile.mkstemp(dir=path.parent)
-            try:
-                with os.fdopen(handle, "wb") as file:
-                    file.write(to_bytes(result, key))
-                Path(name).replace(path)
-            except OSError:  # a full disk
-                Path(name).unlink(missing_ok=True)
+        self._files.write(_name(key), to_bytes(result, key))
 
     def prune(self) -> None:
         """Remove results that have not been used for a long time."""
-        with suppress(OSError):
-            for path in self._folder.glob("*/*"):
-                if time.time() - path.stat().st_mtime > _KEEP_SECONDS:
-                    path.unlink(missing_ok=True)
+        self._files.prune()
 
     def _dependencies(self, path: Path) -> Iterator[str]:
         """Yield the other dependencies of a result: music and pictures by size and time, feet, the other format."""
@@ -284,8 +264,9 @@ class ResultCache:
                 with suppress(FileError):
                     yield hashlib.sha256(read_bytes(other, CHART_LIMIT)).hexdigest()
 
-    def _path(self, key: str) -> Path:
-        return self._folder / key[:2] / key[2:]
+
+def _name(key: str) -> str:
+    return f"{key[:2]}/{key[2:]}"
 
 
 def default_folder() -> Path | None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import time
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -15,7 +14,8 @@ from pathlib import Path
 from dancetutor_cli.chart.selection import find_files, is_chart_name, is_excluded
 from dancetutor_cli.run.errors import FileError, UsageError
 from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
-from dancetutor_cli.run.trust import kept_folder, programs, write_file
+from dancetutor_cli.run.stored_files import DAY, StoredFiles
+from dancetutor_cli.run.trust import kept_folder, programs
 
 LAST = "last"  # the value of --compare that means the last run
 
@@ -172,7 +172,7 @@ def _git(folder: Path, revision: str, *words: str) -> bytes:
 
 _HEAD = b"dancetutor chart 1\n"
 _DIGEST = 32
-_KEEP_SECONDS = 180 * 24 * 3600  # a file that is not analyzed again for so long is removed
+_KEPT = 180 * DAY  # a file that is not analyzed again for so long is removed
 _LONGEST = 1 << 16  # most bytes of a path
 
 
@@ -181,6 +181,7 @@ class ChartStore:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
+        self._files = StoredFiles(folder, longest=_KEPT)
 
     def keep(self, path: Path) -> None:
         """Keep a file as it is now; nothing is written if the store has it already."""
@@ -189,7 +190,7 @@ class ChartStore:
             head, name = _HEAD + hashlib.sha256(data).digest(), os.fsencode(path.absolute())
             place = self._folder / hashlib.sha256(name).hexdigest()
             if _head_of(place)[: len(head)] != head:
-                write_file(place, head + len(name).to_bytes(4, "big") + name + zlib.compress(data, 3))
+                self._files.write(place.name, head + len(name).to_bytes(4, "big") + name + zlib.compress(data, 3))
 
     def files(self) -> Iterator[tuple[Path, StoredFile]]:
         """Yield every kept file with its absolute path."""
@@ -204,10 +205,7 @@ class ChartStore:
 
     def prune(self) -> None:
         """Remove files that have not been analyzed for a long time."""
-        with suppress(OSError):
-            for place in self._folder.glob("*"):
-                if time.time() - place.stat().st_mtime > _KEEP_SECONDS:
-                    place.unlink(missing_ok=True)
+        self._files.prune()
 
 
 def open_store() -> ChartStore | None:

@@ -15,8 +15,8 @@ from types import TracebackType
 from typing import IO
 
 from dancetutor_cli.run.errors import DancetutorError, UnavailableError, install_command
-from dancetutor_cli.run.files import write_atomic
 from dancetutor_cli.run.reading import MEGABYTE, read_json
+from dancetutor_cli.run.stored_files import StoredFiles
 from dancetutor_cli.run.trust import kept_folder, programs
 
 # The choice of ffmpeg: the system's if it has everything that films need, else the one in the package imageio-ffmpeg.
@@ -63,8 +63,7 @@ def missing_abilities(program: Path) -> list[str]:
             return [str(name) for name in found["lacking"]]
     missing = _ask(program)
     if kept is not None:
-        with suppress(DancetutorError, OSError):
-            write_atomic(kept, json.dumps({"key": key, "lacking": missing}).encode())
+        StoredFiles(kept.parent).write(kept.name, json.dumps({"key": key, "lacking": missing}).encode())
     return missing
 
 
