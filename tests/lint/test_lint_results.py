@@ -16,7 +16,7 @@ from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
 from dancetutor_cli.lint.results import ResultCache, to_bytes
 from dancetutor_cli.lint.run import LintRequest, LintRun, _batches, analyze_all
 from dancetutor_cli.run.errors import UnavailableError
-from dancetutor_cli.run.pool import FinishedWork, SerialWorkers
+from dancetutor_cli.run.pool import FinishedWork, SerialWorkers, no_report
 from dancetutor_cli.run.reading import charts_path
 
 pytestmark = pytest.mark.usefixtures("own_records")
@@ -165,7 +165,7 @@ def test_a_breakdown_is_not_kept(song: Path, tmp_path: Path, monkeypatch: pytest
             yield from (FinishedWork(task.key, error=UnavailableError("killed")) for task in self._queue)
 
     monkeypatch.setattr("dancetutor_cli.lint.run._WORTH_WORKERS", 1)
-    monkeypatch.setattr("dancetutor_cli.run.pool.open_workers", lambda jobs, report: Dying(report))
+    monkeypatch.setattr("dancetutor_cli.run.pool.open_workers", lambda jobs: Dying(no_report))
     cache = ResultCache(tmp_path / "cache")
     (result,) = analyze_all([LintRun(LintRequest()).task(song)], 2, cache)
     assert result.error and "killed" in result.error and not (tmp_path / "cache").exists()
@@ -190,7 +190,7 @@ def test_of_files_sent_together_only_the_one_that_breaks_a_worker_is_lost(
         path.write_text(NOTES.format(n))
         tasks.append(LintRun(LintRequest()).task(path))
     whole = list(analyze_all(tasks, 1, None))
-    monkeypatch.setattr("dancetutor_cli.run.pool.open_workers", lambda jobs, report: Dying(report))
+    monkeypatch.setattr("dancetutor_cli.run.pool.open_workers", lambda jobs: Dying(no_report))
     found = list(analyze_all(tasks, 2, None))
     assert [n for n, one in enumerate(found) if one.error] == [5] and "killed" in str(found[5].error)
     assert [*found[:5], *found[6:]] == [*whole[:5], *whole[6:]]
