@@ -18,7 +18,7 @@ from dancetutor_cli.dance.units import Array
 SPINE = (0.0, *SPINE_SHARES)  # how far the bones under vl5, vt10 and vt4 are turned from the pelvis to the chest
 
 
-class Trunk(NamedTuple):
+class TrunkPose(NamedTuple):
     """The trunk in f frames.
 
     pelvis : (f, 3) its place in the world; pelvis_rotation, chest : (f, 4) in the world
@@ -51,7 +51,7 @@ class Trunk(NamedTuple):
         return np.stack(out, axis=1)
 
 
-def trunk_at(body: Trajectory, at: Array, context: Context) -> Trunk:
+def trunk_at(body: Trajectory, at: Array, context: Context) -> TrunkPose:
     """Return the trunk of the body at times `at` (f,), seconds."""
     paths = (body.ground, body.height, body.tilt, body.yaw, body.chest_yaw, body.listed)
     ground, height, tilt, yaw, chest_yaw, listed = (sample_path(path, body.times, at) for path in paths)
@@ -61,4 +61,4 @@ def trunk_at(body: Trajectory, at: Array, context: Context) -> Trunk:
     aside = listed[:, None] * np.column_stack((-np.cos(yaw), np.sin(yaw)))
     pelvis = np.column_stack((ground[:, 0], height, ground[:, 1]))
     pelvis_rotation = leaning(share[:, None] * tilt + aside, yaw)
-    return Trunk(pelvis, pelvis_rotation, leaning(tilt, chest_yaw), bent, yaw, chest_yaw)
+    return TrunkPose(pelvis, pelvis_rotation, leaning(tilt, chest_yaw), bent, yaw, chest_yaw)
