@@ -118,8 +118,8 @@ class Arm:
         return np.asarray(near & ~self._in_trunk(joint, wrist, when) & ~self.busy[when])
 
     def reached(self, x: float, start: int, stop: int) -> tuple[int, int]:
-        """From which check until which one, of those from `start` to `stop`, the hand may rest at x, so that it gets
-        there and away beside the trunk. While the dancer turns quickly it comes later, or leaves earlier.
+        """Return the first and the last check, from `start` to `stop`, at which the hand may rest at x and can reach
+        and leave this place beside the trunk. While the dancer turns quickly it comes later, or leaves earlier.
         """
         wrist, _ = rest_on_bar(self.bar, self.side, x, self.skeleton, self.settings.bar, self.across)
         middle, begin, end = (start + stop) // 2, start, stop
@@ -176,7 +176,7 @@ def turns(plan: Plan, times: Array, trunk: BarTrunk, busy: Flags, context: Conte
     out, numbers, reach = [], context.settings.across, context.settings.bar.reach_time
     free = firm(~busy, (ACROSS_SLOWER - 1.0) * reach)  # a hand that still has to press a panel is not on its way
     for start, end in plan.flights:
-        if end - start > JUMP:  # who jumps is upright
+        if end - start > JUMP:  # a dancer who jumps is upright
             free[_between(times, start - numbers.ease - numbers.early, end + numbers.ease + numbers.early)] = False
     turned = np.degrees(wrapped(trunk.turned))
     for side, yaw in ((1, turned), (0, -turned)):  # turned to the left, the right hand is the far one
@@ -204,7 +204,7 @@ def crossings(wanted: tuple[Grip, ...], times: Array, trunk: BarTrunk, busy: Fla
 
 
 def _longest_crossing(arm: Arm, a: int, b: int) -> tuple[int, int, float]:
-    """From which check, of those from a to b, until which one a hand may stay longest, and where on the rail."""
+    """Return the first and the last check, from a to b, between which a hand may stay longest, and its place."""
     best, bar = (a, a, 0.0), arm.settings.bar
     for farther in FARTHER_AHEAD:
         middle = float(np.median(arm.place[a:b])) + (-1.0, 1.0)[arm.side] * farther
@@ -335,5 +335,5 @@ def _longest(arm: Arm, start: int, end: int) -> tuple[float, int]:
 
 
 def _first(flags: Flags) -> int:
-    """Index of the first True, or how many there are."""
+    """Return the index of the first True, or the length if there is none."""
     return int(np.argmax(flags)) if flags.any() else len(flags)

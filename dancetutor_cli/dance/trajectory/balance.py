@@ -112,7 +112,7 @@ def along_sides(across: Array, places: Array) -> Array:
 
 AGAINST = 0.7  # largest part of the way from the middle of the soles to their edge: nearer to the edge, balance is lost
 FARTHEST = 0.03  # metres; largest offset: beyond it, ankles of wide stands bend too far before a leap
-LEAST_CARRIED = 0.4  # share of her weight: lighter feet hold no moment worth planning for
+LEAST_CARRIED = 0.4  # share of the dancer's weight: feet with less load hold no moment worth planning for
 
 
 def rotation_zmp_offset(skeleton: Skeleton, positions: Array, world: Array, rate: float) -> Array:

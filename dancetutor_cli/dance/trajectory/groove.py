@@ -21,7 +21,7 @@ from dancetutor_cli.dance.units import Array
 def heard_beats(beats: tuple[float, ...], shortest: float) -> Array:
     """Return the beats (k,) to which the dancer moves, seconds: quick beats only every second one, or fewer.
 
-    Not to be changed.
+    The array is shared between calls: do not change it.
     """
     heard: list[float] = []
     for beat in beats:
@@ -50,31 +50,31 @@ def beat_bounce(context: Context, times: Array, tempo: Array, busy: Array) -> Ar
 
 
 def dancing(tempo: Array, busy: Array, layers: LayerSettings) -> Array:
-    """Return how free (n,) her trunk is to dance to the beat, 0 to 1; arguments as in `beat_bounce`."""
+    """Return how free (n,) the trunk is to dance to the beat, 0 to 1; arguments as in `beat_bounce`."""
     return np.asarray(smooth(1.0 - tempo / layers.beat_fade) * (1.0 - np.clip(busy, 0.0, 1.0)))
 
 
 # The trunk in jacks and slow steps: the dancer leans and turns from side to side with the beat, never twice alike.
 
 SEED = 20020716
-OVERSHOOT = 0.1  # how far a smooth path may go beyond what it is near to: 0.06 has been seen
-MOST_LOST = 6.0  # times what is left of a wish for the height at most that the calm path takes from it
-BEAT = 0.5  # seconds from beat to beat with which she bobs by `groove.bob`; farther if slower
+OVERSHOOT = 0.1  # share by which a smoothed path may overshoot its goal; the largest measured overshoot is 0.06
+MOST_LOST = 6.0  # largest factor by which the wanted bob is enlarged, because smoothing the height reduces it
+BEAT = 0.5  # seconds from beat to beat at which the dancer bobs by `groove.bob`; slower beats have a larger bob
 BEATS, STEPS = 0.6, 0.07  # how much hands pump with the beat, and seconds over which they go with a step
-SLOWEST = 0.72  # seconds from beat to beat from which on she bobs no farther
-NEAR_JUMPS = 0.5  # seconds from a jump within which she does not bob as much
-CALM = 0.4  # part of her sway that she leaves off where she comes to rest
-MOSTLY = 0.6  # part of the way from `groove.mostly` to all the time at which she dances as in jacks
+SLOWEST = 0.72  # seconds from beat to beat; the bob of slower beats is no larger
+NEAR_JUMPS = 0.5  # seconds before and after a jump in which the bob is smaller
+CALM = 0.4  # share of the sway that stops where the dancer comes to rest
+MOSTLY = 0.6  # share of the time, from `groove.mostly` (0) to always (1), in which the trunk moves as in jacks
 
 
 @dataclass(frozen=True, slots=True)
 class Groove:
-    """How she dances to the beat at n times.
+    """The dancer's movements to the beat at n times.
 
-    beat : (n,) 0 to 1, how far she has given way to it; sink : (n,) metres that her knees give
-    bob : (n,) metres that her height is wished lower with the beat, so that a calm path leaves `groove.bob` of it
-    sway : (n,) about -1 to 1, to which side her shoulders lean and turn, positive left
-    pump : (n,) the same for hands in streams, where her shoulders keep still: with the beat and with the steps
+    beat : (n,) 0 to 1, how far the body has given way to the beat; sink : (n,) metres that the knees give
+    bob : (n,) metres by which the height is lowered on beats before smoothing, which leaves `groove.bob` of it
+    sway : (n,) about -1 to 1, to which side the shoulders lean and turn, positive left
+    pump : (n,) the same for hands in streams, where the shoulders keep still: with the beat and with the steps
     grounded : (n,) 0 near jumps, where both arms go up and down together, to 1
     carried : (n, 2) about -1 to 1, how far ahead and up the left and the right hand are carried, else back
     """
@@ -131,11 +131,11 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
 
 
 def _bob(context: Context, times: Array, tempo: Array) -> Array:
-    """Return how much lower (n,) she is wished with the beat, metres, on average half of what is left of it.
+    """Return by how much (n,) the height has to be lowered on beats, metres, on average half of what remains of it.
 
-    The calm path of the height leaves 1 / (1 + (2 pi T / beat)^6) of a wish that comes and goes with the beat, T being
-    the time constant of `height.height_path`; so the wish goes so much farther, and knees bend no more for it on
-    average. tempo : (n,) as in `height`
+    Smoothing the height leaves 1 / (1 + (2 pi T / beat)^6) of a movement that comes and goes with the beat. T is the
+    time constant of `height.height_path`. So the movement is enlarged by the inverse, and the knees bend no more for
+    it on average. tempo : (n,) as in `height`
     """
     body, late = context.settings.body, context.settings.layers.beat_late
     at = heard_beats(context.beats, context.settings.layers.beat_shortest)
