@@ -29,7 +29,7 @@ def test_peak_is_that_of_the_fastest_eight_gaps(tool: ModuleType) -> None:
 
 def test_a_chart_is_measured_and_the_worst_comes_first(tool: ModuleType, tmp_path: Path) -> None:
     song = charts_path() / "two_left_feet" / "two_left_feet.ssc"
-    good = tool.measure(None, tool.Wanted(str(song), 0, "dance-single Beginner 1", 1), "itg", False)
+    good = tool.measure(tool.Wanted(str(song), 0, "dance-single Beginner 1", 1), "itg", False)
     assert good.missed == [] and good.steps == 35 and {"contact error", "balance"} <= {f["name"] for f in good.figures}
     bad = tool.Measured("x.sm", 0, "dance-single Hard 9", 40, 20.0, 13.0, 1.0, "", [dict(f) for f in good.figures])
     next(f for f in bad.figures if f["name"] == "balance").update(value=90.0, met=False)
@@ -82,5 +82,5 @@ def test_a_section_is_in_the_chart(tool: ModuleType) -> None:
     assert tool.section_start(stepped, 0.7, 400.0) == 8.0
     song = charts_path() / "two_left_feet" / "two_left_feet.ssc"
     wanted = tool.Wanted(str(song), 0, "dance-single Beginner 1", 1, 0.5)
-    found = tool.measure(None, wanted, "itg", False, 10.0)
+    found = tool.measure(wanted, "itg", False, 10.0)
     assert 3 < found.steps < 30 and found.seconds <= 10.0 and found.start > 0.0

@@ -131,12 +131,21 @@ class Browser:
         return found["result"].get("value")
 
     def wait(self, expression: str, seconds: float = 120.0) -> Any:
-        """The expression's value as soon as it is true."""
+        """The expression's value as soon as it is true; a page that is left meanwhile is asked again."""
         deadline = time.monotonic() + seconds
-        while not (value := self.run(expression)):
+        while not (value := self._value_or_left(expression)):
             assert time.monotonic() < deadline, f"never came true: {expression}; {self.problems}"
             time.sleep(0.05)
         return value
+
+    def _value_or_left(self, expression: str) -> Any:
+        """The value of an expression, or None if the page was left before it had one."""
+        try:
+            return self.run(expression)
+        except RuntimeError as error:
+            if "Inspected target navigated" not in str(error):
+                raise
+            return None
 
     def size(self, width: int, height: int, *, touch: bool = False) -> None:
         """The window's size in pixels of CSS."""
