@@ -8,7 +8,7 @@ reader.load                   the entry point; a file is read in four steps
   |   ucs                       UCS files of Pump, a different format without these steps
 model.Song, model.Chart       what every other package works with
 
-selection, folder_reader      which charts a path stands for; the songs below folders
+selection                     which charts a path stands for; the songs below folders
 pack_files                    settings files beside charts
 music, audio                  which file is the song's music; its samples
 density, hash, names          streams and tempos; the hash of leaderboards; names from the games

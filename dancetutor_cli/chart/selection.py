@@ -1,19 +1,18 @@
-"""The chart files that a path stands for (files, folders, pairs of .sm and .ssc), and the selected charts in them."""
+"""The chart files that a path stands for (files, folders, pairs of .sm and .ssc), their songs, the selected charts."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from dancetutor_cli.run.errors import DancetutorError, UsageError, choose_text
+from dancetutor_cli.run.errors import DancetutorError, NoChartsError, UsageError, choose_text
 from dancetutor_cli.run.files import CHART_SUFFIXES, SONG_SUFFIXES
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
-
 
 _RESOURCE_FORK = "._"  # prefix of files that macOS writes on foreign disks; the games skip them too
 
@@ -214,3 +213,42 @@ def _difficulty(text: str) -> str:
 
 def _listed(charts: Iterable[Chart]) -> str:
     return ", ".join(f"{chart.index} {chart.label}" for chart in charts)
+
+
+# The songs below folders, for runs that make something of every chart: films and pages.
+
+
+class UnreadableFile(NamedTuple):
+    """A chart file that cannot be read."""
+
+    path: Path
+    error: str
+
+
+@dataclass
+class FolderReader:
+    """The songs that paths stand for. exclude : patterns of files that are left out, as for `find_files`
+
+    While the songs are read, `unreadable` gets the files that cannot be read, and `without` those without charts.
+    """
+
+    paths: Sequence[Path]
+    exclude: Sequence[str] = ()
+    unreadable: list[UnreadableFile] = field(default_factory=list)
+    without: list[Path] = field(default_factory=list)
+
+    def songs(self) -> Iterator[Song]:
+        """Yield each song, sorted by path; for a song with a .sm and a .ssc the .ssc, as in the games."""
+        from dancetutor_cli.chart.reader import load  # needs numpy, which `--help` does without
+
+        for path in find_files(self.paths, self.exclude):
+            if path.suffix.lower() == ".sm" and path not in self.paths and twin(path) is not None:
+                continue
+            try:
+                song = load(path)
+            except NoChartsError:  # the music of a menu, which is not for dancing
+                self.without.append(path)
+            except (DancetutorError, OSError) as error:
+                self.unreadable.append(UnreadableFile(path, str(error)))
+            else:
+                yield song

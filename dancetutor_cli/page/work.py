@@ -11,9 +11,8 @@ import numpy as np
 
 from dancetutor_cli.character.characters import load_character, name_in_gait
 from dancetutor_cli.character.mesh import with_foot_colours
-from dancetutor_cli.chart.folder_reader import FolderReader, UnreadableFile
 from dancetutor_cli.chart.music import find_music
-from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.chart.selection import FolderReader, Selection, UnreadableFile
 from dancetutor_cli.dance.motion import Cut, shifted
 from dancetutor_cli.dance.performance import pad_of, perform, play_of_all, playable, pooled, solve
 from dancetutor_cli.dance.request import check_request, read_chart

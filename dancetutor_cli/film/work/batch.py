@@ -11,8 +11,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from dancetutor_cli.chart.folder_reader import FolderReader, UnreadableFile
-from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.chart.selection import FolderReader, Selection, UnreadableFile
 from dancetutor_cli.film.media.encoder import Encoding
 from dancetutor_cli.film.media.film_formats import PICTURES
 from dancetutor_cli.film.work import jobs as film_jobs
