@@ -4,7 +4,7 @@ analyze                       the subcommand; its options as a record are in ana
 pack, drawings                `analyze` of packs, `--compare` and `--tech-counts`; `--sheet` and `--plot`
 fix_option, settings          `analyze --fix`; `analyze --show-settings`
 render, render_batch          a film; the films of a folder
-folder_run                    the messages of a run over a folder, for films and pages
+folder_run                    the messages of a run over a folder, for films and pages; joined warnings
 film_options                  the options of `render`, and the request made from them
 annotate, animate, retarget, page, doctor, warmup, completion   the other subcommands
 motion_output                 `--report` and `--plot` of `animate` and `retarget`

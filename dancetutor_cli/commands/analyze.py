@@ -33,8 +33,7 @@ from dancetutor_cli.commands.shared_options import (
     selection_options,
 )
 from dancetutor_cli.commands.tab_names import fixes, folder, named, rules
-from dancetutor_cli.reports.analyze_formats import FORMATS, Output, open_report
-from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.reports.analyze_formats import FORMATS, Output, Tally, open_report
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.files import check_file
 from dancetutor_cli.run.trust import results_folder

@@ -13,6 +13,7 @@ import click
 from dancetutor_cli.chart.selection import Selection, find_files, note_bytes
 from dancetutor_cli.commands.arguments import GivenPath, WholeNumber, report_error, warn, within_folders
 from dancetutor_cli.commands.first_run import announce_compiling
+from dancetutor_cli.commands.folder_run import JoinedWarnings
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.commands.shared_options import (
     exclude_option,
@@ -24,7 +25,6 @@ from dancetutor_cli.commands.shared_options import (
     verbose_option,
 )
 from dancetutor_cli.markers.styles import STRIPPED, STYLES
-from dancetutor_cli.reports.joined_warnings import JoinedWarnings
 from dancetutor_cli.reports.terminal import coloured, safe
 from dancetutor_cli.run.errors import UsageError, choose_text
 from dancetutor_cli.run.files import check_folder

@@ -49,7 +49,7 @@ def write_sheet(path: Path, tasks: list[AnalyzeTask], language: str | None) -> s
 
 
 def _facts(chart: Drawable, sheet: Sheet) -> list[str]:
-    from dancetutor_cli.reports.moments import clock
+    from dancetutor_cli.reports.analyze_formats import clock
     from dancetutor_cli.reports.sheet import facts_of
     from dancetutor_cli.reports.sheet_drawing import unsure_rows
 

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from dancetutor_cli.commands.analyze_options import AnalyzeOptions
     from dancetutor_cli.lint.analysis import AnalyzeTask
     from dancetutor_cli.lint.results import FileResult
+    from dancetutor_cli.reports.analyze_formats import Tally
     from dancetutor_cli.reports.pack import Pack
-    from dancetutor_cli.reports.tally import Tally
 
 
 # Options of `analyze` about how hard charts play, and about a pack as a whole.

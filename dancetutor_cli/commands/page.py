@@ -12,7 +12,7 @@ import click
 from dancetutor_cli.chart.selection import Selection, one_song
 from dancetutor_cli.commands.arguments import GivenPath, warn
 from dancetutor_cli.commands.first_run import announce_compiling
-from dancetutor_cli.commands.folder_run import FolderRun
+from dancetutor_cli.commands.folder_run import FolderRun, JoinedWarnings
 from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.commands.shared_options import (
     DanceOptions,
@@ -27,7 +27,6 @@ from dancetutor_cli.commands.shared_options import (
     selection_options,
     verbose_option,
 )
-from dancetutor_cli.reports.joined_warnings import JoinedWarnings
 from dancetutor_cli.reports.terminal import safe, safe_path
 from dancetutor_cli.run.errors import UsageError, plural
 from dancetutor_cli.run.files import check_file, check_folder, plain_name, write_atomic

@@ -13,8 +13,7 @@ import click
 
 from dancetutor_cli.commands.arguments import LONG, note
 from dancetutor_cli.commands.film_options import RenderOptions, film_request
-from dancetutor_cli.commands.folder_run import FolderRun
-from dancetutor_cli.reports.joined_warnings import JoinedWarnings
+from dancetutor_cli.commands.folder_run import FolderRun, JoinedWarnings
 from dancetutor_cli.reports.progress import FilmProgress
 from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.run.errors import FileError

@@ -1,10 +1,8 @@
 """The output of a run: text, JSON, CSV, SARIF and other formats, the page of a pack, the chart sheet.
 
-analyze_formats               formats of `analyze` by name, and their base class
-tally, moments                the counts of a run and its exit status; places in a song as text
+analyze_formats               formats of `analyze` by name; their base class, the counts of a run, places as text
 brief, text_report            text for people: at most a screen, or everything
-terminal, joined_warnings     safe and coloured text; the warnings of a run, joined
-progress                      the progress of a film
+terminal, progress            safe and coloured text; the progress of a film
 data_formats, code_formats    formats for programs; formats for code review
 rule_pages                    the documentation of a rule
 pack, pack_page               a pack as data and lines; a pack as a page

@@ -11,9 +11,7 @@ from dataclasses import dataclass
 
 from dancetutor_cli.lint.findings import RANKS, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
-from dancetutor_cli.reports.analyze_formats import Output, Report
-from dancetutor_cli.reports.moments import measures_text
-from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.reports.analyze_formats import Output, Report, Tally, measures_text
 from dancetutor_cli.reports.terminal import FIXED_BLANK, cut, safe, safe_path, terminal_of
 from dancetutor_cli.reports.text_report import STYLES
 from dancetutor_cli.run.errors import plural

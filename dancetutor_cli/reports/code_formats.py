@@ -13,10 +13,9 @@ import dancetutor_cli
 from dancetutor_cli.lint.results import FileResult
 from dancetutor_cli.lint.rule import FAMILIES, Rule, all_rules
 from dancetutor_cli.lint.rule_settings import default_rules
-from dancetutor_cli.reports.analyze_formats import Output, Report
+from dancetutor_cli.reports.analyze_formats import Output, Report, Tally
 from dancetutor_cli.reports.data_formats import Entry, entries, relative
 from dancetutor_cli.reports.rule_pages import documentation
-from dancetutor_cli.reports.tally import Tally
 from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.run.foreign_text import json_without_commands, write_command, xml_without_commands
 

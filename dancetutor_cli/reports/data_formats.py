@@ -15,8 +15,7 @@ import dancetutor_cli
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.lint.findings import TECH_COUNTS, Cause, Estimate, Finding, ScoreEstimate, Sync
 from dancetutor_cli.lint.results import ChartResult, FileResult
-from dancetutor_cli.reports.analyze_formats import Output, Report
-from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.reports.analyze_formats import Output, Report, Tally
 from dancetutor_cli.reports.terminal import safe, safe_path
 from dancetutor_cli.run.foreign_text import as_text, json_without_commands
 

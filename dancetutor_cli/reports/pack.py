@@ -11,7 +11,7 @@ from pathlib import Path
 from dancetutor_cli.chart.pack_files import pack_folder, read_pack_ini
 from dancetutor_cli.lint.findings import RANKS, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
-from dancetutor_cli.reports.moments import measures_text
+from dancetutor_cli.reports.analyze_formats import measures_text
 from dancetutor_cli.reports.terminal import cut, safe, safe_path
 from dancetutor_cli.run.errors import plural
 

@@ -15,7 +15,7 @@ from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet.limbs import LABELS
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.reports.moments import clock, moment
+from dancetutor_cli.reports.analyze_formats import clock, moment
 from dancetutor_cli.reports.sheet_drawing import HOLD_OPACITY, Sheet, badge, definitions, mark, system, unsure_rows
 from dancetutor_cli.reports.sheet_places import SheetStyle, lay_out, sheet_style
 from dancetutor_cli.reports.svg import tag, text, title

@@ -13,7 +13,7 @@ from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.feet.limbs import Part
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.reports.moments import clock
+from dancetutor_cli.reports.analyze_formats import clock
 from dancetutor_cli.reports.sheet_places import LETTERS, SheetLayout, SheetStyle
 from dancetutor_cli.reports.svg import number, tag, text, title
 from dancetutor_cli.reports.terminal import safe

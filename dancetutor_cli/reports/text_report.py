@@ -10,9 +10,7 @@ from typing import NamedTuple
 from dancetutor_cli.feet.limbs import hex_colour, limb_colours
 from dancetutor_cli.lint.findings import ExcerptRow, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
-from dancetutor_cli.reports.analyze_formats import Output, Report
-from dancetutor_cli.reports.moments import moment
-from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.reports.analyze_formats import Output, Report, Tally, moment
 from dancetutor_cli.reports.terminal import Terminal, can_encode, safe, safe_path, terminal_of
 
 # The rows around a finding as arrows with L and R, in characters.

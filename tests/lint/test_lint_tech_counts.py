@@ -25,9 +25,8 @@ from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.lint.figures import tech_counts
 from dancetutor_cli.lint.findings import TECH_COUNTS
 from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.reports.analyze_formats import Output
+from dancetutor_cli.reports.analyze_formats import Output, Tally
 from dancetutor_cli.reports.data_formats import CsvReport
-from dancetutor_cli.reports.tally import Tally
 
 # Columns of a pad: x of its panel, and the way its arrow points.
 PADS = {"dance-single": [(-1, "L"), (0, "D"), (0, "U"), (1, "R")]}

@@ -24,9 +24,8 @@ from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
 from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
-from dancetutor_cli.reports.analyze_formats import Output, Report
+from dancetutor_cli.reports.analyze_formats import Output, Report, Tally
 from dancetutor_cli.reports.code_formats import GithubReport, GitlabReport, JunitReport
-from dancetutor_cli.reports.tally import Tally
 
 ODD = 'a "<b>" & \x00\x1b[2J, 100 %: ]]> \uffff\ud800'
 SPIN = Finding("DT202", "spin", "warning", ODD, 133, 2, 1, 16.0, 4, 7.5, None, 0)

@@ -12,9 +12,8 @@ import pytest
 
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
-from dancetutor_cli.reports.analyze_formats import Output
+from dancetutor_cli.reports.analyze_formats import Output, Tally
 from dancetutor_cli.reports.code_formats import SarifReport, uri
-from dancetutor_cli.reports.tally import Tally
 
 LEVELS = {"none", "note", "warning", "error"}
 MESSAGE = {"text": str}

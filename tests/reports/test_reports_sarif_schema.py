@@ -21,9 +21,8 @@ from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.preset import PresetChoice, load_preset
 from dancetutor_cli.lint.analysis import AnalyzeTask, analyze_file
 from dancetutor_cli.lint.configuration import load_configuration
-from dancetutor_cli.reports.analyze_formats import Output
+from dancetutor_cli.reports.analyze_formats import Output, Tally
 from dancetutor_cli.reports.code_formats import SarifReport
-from dancetutor_cli.reports.tally import Tally
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PACKAGE = "@microsoft/jest-sarif@1.0.0-beta.0"

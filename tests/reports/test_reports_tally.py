@@ -9,7 +9,7 @@ import pytest
 
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.results import FileResult
-from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.reports.analyze_formats import Tally
 
 
 def result(*severities: str, error: str | None = None) -> FileResult:

@@ -19,9 +19,7 @@ from dancetutor_cli.commands import cli
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.reports import text_report
-from dancetutor_cli.reports.analyze_formats import Output
-from dancetutor_cli.reports.moments import clock
-from dancetutor_cli.reports.tally import Tally
+from dancetutor_cli.reports.analyze_formats import Output, Tally, clock
 from dancetutor_cli.reports.terminal import Terminal, terminal_of
 from dancetutor_cli.reports.text_report import TextReport, chart_table
 from dancetutor_cli.run.reading import charts_path

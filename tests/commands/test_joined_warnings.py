@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from dancetutor_cli.reports.joined_warnings import JoinedWarnings
+from dancetutor_cli.commands.folder_run import JoinedWarnings
 
 EMPTY = "no charts: the file has no NOTES"
 
