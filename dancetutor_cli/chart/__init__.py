@@ -12,5 +12,5 @@ selection                     which charts a path stands for; the songs below fo
 pack_files                    settings files beside charts
 music, audio                  which file is the song's music; its samples
 density, hash, names          streams and tempos; the hash of leaderboards; names from the games
-edits, note_writer            edits of a file's bytes; notes as bytes
+edits                         edits of a file's bytes; notes as bytes
 """

@@ -10,9 +10,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.chart.edits import Splice
+from dancetutor_cli.chart.edits import Splice, write_notes
 from dancetutor_cli.chart.model import STEP_KINDS, Chart, Song
-from dancetutor_cli.chart.note_writer import write_notes
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play
