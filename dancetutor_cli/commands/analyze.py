@@ -217,8 +217,7 @@ def command(selection: Selection, options: AnalyzeOptions) -> int:
 
 def _watch(request: LintRequest, options: AnalyzeOptions) -> int:
     """Analyze all files, then each file that is saved, until Ctrl-C."""
-    from dancetutor_cli.lint.run import LintRun
-    from dancetutor_cli.lint.watch import changes
+    from dancetutor_cli.lint.run import LintRun, changes
 
     if any(str(path) == "-" for path in options.paths):
         raise UsageError("--watch needs files or folders, not standard input")

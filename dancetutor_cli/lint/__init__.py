@@ -10,7 +10,6 @@ run.LintRun                   a run of `analyze`: configuration and rule_setting
   |   figures                   the rest of the report on a chart: other ways, counts
 sections                      the part of a chart that a user names: a span, around a finding, a hard passage
 findings.Finding              what a rule reports
-watch                         a loop that waits for saved files, for `analyze --watch`
 
 suggest, edit_shape           small edits that would remove a finding; the shape of a chart that they must keep
 fix_edits, fix                fixes as edits of bytes; the fixes are made in a file and checked one by one
