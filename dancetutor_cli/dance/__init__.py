@@ -30,7 +30,7 @@ last.
     pieces, bake, keys            the pieces of a song; the order of work for a piece; the times of its keys
     kept, ends                    the store of baked pieces; the beginning and the end of a cut
     smoothing                     paths over time
-    quadratic, nonnegative        banded least squares with limits; least squares with non-negative unknowns
+    quadratic                     banded least squares with limits
 
 The mirror image of a play gives the mirror image of the motion: where both sides are equal, the leading foot decides
 (`Plan.lead`). Numbers are in `configs/motion.yaml` (`settings`) and `configs/gaits` (`gait`), or follow from the rig.

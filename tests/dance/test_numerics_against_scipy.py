@@ -14,7 +14,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial.transform import Rotation
 
 from dancetutor_cli.character.surfaces import connected
-from dancetutor_cli.dance.nonnegative import nonnegative_least_squares
+from dancetutor_cli.dance.quality.dynamics import nonnegative_least_squares
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.smoothing import recursive_filter
 

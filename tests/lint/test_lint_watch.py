@@ -11,8 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 from dancetutor_cli.commands.analyze import command
-from dancetutor_cli.lint.run import LintRequest, LintRun
-from dancetutor_cli.lint.watch import changes
+from dancetutor_cli.lint.run import LintRequest, LintRun, changes
 
 pytestmark = pytest.mark.usefixtures("own_records")
 
@@ -120,7 +119,7 @@ def test_the_command_lints_again_with_the_new_configuration(tmp_path: Path, monk
         *(nothing, write(settings, "rules: {unplayable: nonsense}\n", 2_000), nothing),
         *(nothing, write(settings, "rules: {unplayable: warning}\n", 3_000), nothing),
     ]
-    monkeypatch.setattr("dancetutor_cli.lint.watch.changes", partial(changes, wait=Sleeper(*steps)))
+    monkeypatch.setattr("dancetutor_cli.lint.run.changes", partial(changes, wait=Sleeper(*steps)))
     words = [str(tmp_path), "--watch", "--select", "unplayable", "--no-cache"]
     result = CliRunner().invoke(command, words, standalone_mode=False)
     assert [line for line in result.stdout.splitlines() if line.startswith("1 file")] == [
