@@ -5,8 +5,8 @@ run.LintRun                   a run of `analyze`: configuration and rule_setting
   |   subject                   the object that a rule checks: a file, or a chart with its play
   |   plays, candidates         the plays of many charts as arrays; the rows that a rule would have to check
   |   play_facts, note_facts    facts about the play of one chart; facts about its notes and their place in the file
-  |   check, rule, rules        the rules, and how they are run over files and charts
-  |   baseline, pack_syncs      findings that are accepted; findings about all songs of a pack together
+  |   check, rule, rules        the rules, and how they are run over files, charts and packs
+  |   baseline                  findings that are accepted
   |   figures                   the rest of the report on a chart: other ways, counts
 sections                      the part of a chart that a user names: a span, around a finding, a hard passage
 findings.Finding              what a rule reports

@@ -15,6 +15,7 @@ from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.preset import PresetChoice, choice_of
 from dancetutor_cli.lint.analysis import AnalyzeTask, ResultOptions, analyze_files, failure_result
 from dancetutor_cli.lint.baseline import Baseline, Key, load_baseline
+from dancetutor_cli.lint.check import PackSyncs
 from dancetutor_cli.lint.configuration import (
     Configuration,
     load_configuration,
@@ -22,7 +23,6 @@ from dancetutor_cli.lint.configuration import (
     with_selection,
 )
 from dancetutor_cli.lint.findings import Finding
-from dancetutor_cli.lint.pack_syncs import PackSyncs
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.run.errors import DancetutorError, plural
 

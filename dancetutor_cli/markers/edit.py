@@ -51,7 +51,7 @@ def sides(chart: Chart, play: Play) -> NDArray[np.int64]:
 
 
 def note_data(chart: Chart, play: Play, eol: bytes) -> bytes:
-    """Return the note data of the lane-split chart, by `chart.note_writer.write_notes`."""
+    """Return the note data of the lane-split chart, by `chart.edits.write_notes`."""
     columns = chart.notes.column + _COLUMNS * sides(chart, play)
     return write_notes(chart.notes, columns, 2 * _COLUMNS, eol)
 

@@ -12,9 +12,9 @@ from PIL import Image
 from synthetic import song
 
 from dancetutor_cli.commands.analyze import command
+from dancetutor_cli.lint.check import PackSyncs
 from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.lint.findings import sync_of
-from dancetutor_cli.lint.pack_syncs import PackSyncs
 from dancetutor_cli.lint.results import FileResult
 
 NULL, ITG, OTHER = 0.5, 9.5, 25.0
