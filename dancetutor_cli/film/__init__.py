@@ -12,5 +12,5 @@ work                    the way from a request to a plan to a file; uses all the
 clock, scroll           the second of the music in each frame; how fast notes scroll
 notes                   the chart and its play, timed by the music: notes, presses, beats, lights
 layout, choices         layouts, and the look of a film; the names of qualities and renderers
-words, picture          the names of moves; the frame, the pad and the foot that the parts share
+words, picture          the names of moves, and phrases; the frame, the pad and the foot that the parts share
 """

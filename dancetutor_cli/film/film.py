@@ -18,7 +18,6 @@ from dancetutor_cli.film.overlay.diagram import FeetDiagram, Lettering, NextRows
 from dancetutor_cli.film.overlay.header import Lines
 from dancetutor_cli.film.overlay.highway import Highway, Score
 from dancetutor_cli.film.overlay.marks import HighwayGeometry, lane_width_for_words
-from dancetutor_cli.film.overlay.phrases import standing_tags
 from dancetutor_cli.film.overlay.sprites import WordStyle, callout_words, highway_style
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.picture import Frame, darkened
@@ -26,6 +25,7 @@ from dancetutor_cli.film.placement import PartBoxes, Placement, Stay, placement,
 from dancetutor_cli.film.plan import FilmPlan, turned
 from dancetutor_cli.film.scene.props import Television
 from dancetutor_cli.film.scroll import parse_scroll
+from dancetutor_cli.film.words import standing_tags
 from dancetutor_cli.run.languages import load_language
 
 if TYPE_CHECKING:

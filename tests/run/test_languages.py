@@ -14,8 +14,7 @@ from dancetutor_cli.feet.limbs import LABELS
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.film.overlay import text
-from dancetutor_cli.film.overlay.phrases import BACK, FRONT, JUMP
-from dancetutor_cli.film.words import HOLD, MINE
+from dancetutor_cli.film.words import BACK, FRONT, HOLD, JUMP, MINE
 from dancetutor_cli.lint.rule import all_rules
 from dancetutor_cli.run.errors import FileError, UnavailableError, UsageError
 from dancetutor_cli.run.languages import load_language

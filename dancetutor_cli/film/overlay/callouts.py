@@ -17,8 +17,18 @@ from dancetutor_cli.feet.move_spans import CROSSED, FULL, crossover_spans
 from dancetutor_cli.feet.play import MOVE
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS, moves_and_turns
 from dancetutor_cli.film.notes import Callout
-from dancetutor_cli.film.overlay.phrases import Phrase, crossing_phrase, plain, stepped_phrase, turning_phrase
-from dancetutor_cli.film.words import IMPLIED_BY_BRACKET, MINE, PanelNames, filled, short_words
+from dancetutor_cli.film.words import (
+    IMPLIED_BY_BRACKET,
+    MINE,
+    PanelNames,
+    Phrase,
+    crossing_phrase,
+    filled,
+    plain,
+    short_words,
+    stepped_phrase,
+    turning_phrase,
+)
 from dancetutor_cli.run.languages import Language, load_language
 
 if TYPE_CHECKING:

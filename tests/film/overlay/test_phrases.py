@@ -23,15 +23,15 @@ from dancetutor_cli.feet.solver.techniques import half_turned
 from dancetutor_cli.film.choices import Ahead
 from dancetutor_cli.film.overlay.announce import _foot_colour
 from dancetutor_cli.film.overlay.callouts import CalloutSubject, CallStyle, callouts_of
-from dancetutor_cli.film.overlay.phrases import (
+from dancetutor_cli.film.overlay.sprites import callout_words
+from dancetutor_cli.film.scroll import parse_segments
+from dancetutor_cli.film.words import (
     Phrase,
     crossing_phrase,
     standing_tags,
     stepped_phrase,
     turning_phrase,
 )
-from dancetutor_cli.film.overlay.sprites import callout_words
-from dancetutor_cli.film.scroll import parse_segments
 from dancetutor_cli.run.languages import load_language
 from dancetutor_cli.run.reading import config_names
 
