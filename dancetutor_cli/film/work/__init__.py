@@ -6,10 +6,9 @@ request.FilmRequest           what the user wants; a `jobs.FilmJob` adds the fil
   |   jobs.open_film            the work before the first frame, with these two -> `OpenedFilm`
   |   segments                  pieces of a film that any process draws and encodes
   |   jobs.close_film           the work after the last frame -> `ClosedFilm`
-jobs.FilmOutcome              what became of the job
+jobs.FilmOutcome              what became of the job; its poster, subtitles and poses are written by `jobs`, too
 
 film_dance                    the play and the motions that the film shows
-extras                        the files besides a film: a picture for each row, a poster, subtitles
 batch, records                one film or the films of folders; `FilmRecord`, kept of each film for a later run
 motion_film                   a film of a motion without a chart
 worker_imports, worker_imports_gl   the common imports of the processes that draw

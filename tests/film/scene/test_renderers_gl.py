@@ -18,9 +18,8 @@ from dancetutor_cli.film.scene import renderer
 from dancetutor_cli.film.scene.camera import with_pan_range
 from dancetutor_cli.film.scene.geometry import pack
 from dancetutor_cli.film.scene.gl import available
-from dancetutor_cli.film.scene.gl.matrices import joint_boxes, places_of
 from dancetutor_cli.film.scene.scene import Scene
-from dancetutor_cli.film.scene.shared import skin_matrices
+from dancetutor_cli.film.scene.shared import joint_boxes, places_of, skin_matrices
 from dancetutor_cli.run.errors import UnavailableError
 
 SIZE = (640, 360)

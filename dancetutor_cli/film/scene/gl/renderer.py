@@ -34,7 +34,6 @@ from dancetutor_cli.film.scene.gl.framebuffers import (
     texture,
     trodden,
 )
-from dancetutor_cli.film.scene.gl.matrices import camera_matrix, joint_boxes, light_matrix, places_of, within
 from dancetutor_cli.film.scene.gl.programs import (
     Program,
     ProgramCache,
@@ -60,15 +59,20 @@ from dancetutor_cli.film.scene.shared import (
     STRENGTH,
     Cast,
     DancerVisibility,
+    camera_matrix,
     dancer_visibility,
     feet_on_floor,
+    joint_boxes,
     joints_of,
+    light_matrix,
     panel_lights,
     pixel_box,
     pixels_per_metre,
     place_cast,
+    places_of,
     shadow_middles,
     skin_matrices,
+    within,
 )
 from dancetutor_cli.run.errors import UnavailableError, UsageError
 
@@ -80,7 +84,7 @@ _SHADOW_UNIT, _SKIN_UNIT, _FIRST_UNIT = 4, 5, 0
 class _DancerInFrame(NamedTuple):
     """The dancer in one frame. part : her visible part; joints : (j, 4, 4)
 
-    places : `film.scene.gl.matrices.places_of`; cast, light : the place of her shadow map, and its matrix (4, 4)
+    places : `film.scene.shared.places_of`; cast, light : the place of her shadow map, and its matrix (4, 4)
     """
 
     part: DancerVisibility
