@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from dancetutor_cli.run.fingerprint import fingerprint, program_hash
+from dancetutor_cli.run.stored_files import fingerprint, program_hash
 
 ROOT = Path(__file__).resolve().parent.parent
 SHARED = ROOT.parent / "shared" / "data"

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.character.characters import load_character
-from dancetutor_cli.character.fitting import body_of
+from dancetutor_cli.character.characters import body_of, load_character
 from dancetutor_cli.character.humanoid import humanoid_of
 from dancetutor_cli.character.onto_skeleton import onto
 from dancetutor_cli.dance.motion import Motion

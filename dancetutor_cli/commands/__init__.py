@@ -7,9 +7,8 @@ render, render_batch          a film; the films of a folder
 folder_run                    the messages of a run over a folder, for films and pages; joined warnings
 film_options                  the options of `render`, and the request made from them
 annotate, animate, retarget, page, doctor, warmup, completion   the other subcommands
-motion_output                 `--report` and `--plot` of `animate` and `retarget`
-shared_options, tab_names     options of several commands; the names that the Tab key completes
-arguments, help_groups        paths, charts and targets on the command line; the groups of `--help`
+shared_options                options of several commands; `--report` and `--plot` of motions
+arguments, help_groups        paths, charts, targets and completed names on the command line; the groups of `--help`
 first_run                     messages before work that compiles; the output without a subcommand
 """
 

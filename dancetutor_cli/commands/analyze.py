@@ -12,7 +12,19 @@ import click
 
 from dancetutor_cli.chart.selection import Selection, find_files, note_bytes
 from dancetutor_cli.commands.analyze_options import AnalyzeOptions
-from dancetutor_cli.commands.arguments import GivenPath, Source, WholeNumber, note, open_output, report_error, sources
+from dancetutor_cli.commands.arguments import (
+    GivenPath,
+    Source,
+    WholeNumber,
+    fixes,
+    folder,
+    named,
+    note,
+    open_output,
+    report_error,
+    rules,
+    sources,
+)
 from dancetutor_cli.commands.drawings import check_plot, check_sheet, write_plot, write_sheet
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
@@ -32,7 +44,6 @@ from dancetutor_cli.commands.shared_options import (
     same_fields,
     selection_options,
 )
-from dancetutor_cli.commands.tab_names import fixes, folder, named, rules
 from dancetutor_cli.reports.analyze_formats import FORMATS, Output, Tally, open_report
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.files import check_file

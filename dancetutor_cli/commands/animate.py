@@ -13,11 +13,11 @@ from dancetutor_cli.chart.timing import FASTEST, SLOWEST, heard
 from dancetutor_cli.commands.arguments import LONG, GivenPath, Number, confirm_long, default_name, warn
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.help_groups import GroupedCommand
-from dancetutor_cli.commands.motion_output import check_targets, write_report
 from dancetutor_cli.commands.shared_options import (
     TABLE,
     DanceOptions,
     character_option,
+    check_targets,
     dance_options,
     into,
     jobs_option,
@@ -26,6 +26,7 @@ from dancetutor_cli.commands.shared_options import (
     report_option,
     section_option,
     selection_options,
+    write_report,
     yes_option,
 )
 from dancetutor_cli.formats.writers import FORMATS, MOVES, write_dancer

@@ -1,21 +1,25 @@
-"""Paths, numbers and charts on the command line, the output of results, and the messages and questions beside it."""
+"""Paths, numbers, charts and completed names on the command line, the output of results, messages and questions."""
 
 from __future__ import annotations
 
 import io
 import os
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 import click
+from click.shell_completion import CompletionItem
 
+from dancetutor_cli.chart.names import COLUMNS, DIFFICULTIES
 from dancetutor_cli.chart.selection import find_files, without_links_out
 from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import UCS_SUFFIX, plain_name, write_atomic
+from dancetutor_cli.run.reading import config_names
 from dancetutor_cli.run.trust import exclude
 
 if TYPE_CHECKING:
@@ -175,3 +179,55 @@ def confirm_long(what: str, verb: str) -> None:
         click.confirm(f"{what}. {verb} it?", abort=True, err=True)
     else:
         raise UsageError(f"{what}; choose a part with --section, or add --yes")
+
+
+# The names with which the Tab key completes an option; they are read only while a shell completes.
+
+_Completer = Callable[[click.Context, click.Parameter, str], list[CompletionItem]]
+
+
+def named(names: Callable[[], Iterable[str]], files: bool = True) -> _Completer:
+    """Return a completer of an option from `names`; if no name fits and `files` is set, the shell completes files."""
+
+    def complete(_context: click.Context, _option: click.Parameter, begun: str) -> list[CompletionItem]:
+        found = [CompletionItem(name) for name in sorted(names()) if name.lower().startswith(begun.lower())]
+        return found or ([CompletionItem(begun, type="file")] if files else [])
+
+    return complete
+
+
+def rules() -> Iterable[str]:
+    """Return the codes and names of the rules."""
+    from dancetutor_cli.lint.rule import all_rules
+
+    return [word for code, rule in all_rules().items() for word in (code, rule.name)]
+
+
+def fixes() -> Iterable[str]:
+    """Return the values that --fix accepts."""
+    from dancetutor_cli.lint.fix import FIXABLE
+
+    return ["safe", *FIXABLE]
+
+
+def folder(name: str) -> Callable[[], Iterable[str]]:
+    """Return a function that lists the files in a folder of configs, without their suffix."""
+
+    return partial(config_names, name)
+
+
+def steps_types() -> Iterable[str]:
+    """Return the names of all steps types."""
+    return COLUMNS
+
+
+def difficulties() -> Iterable[str]:
+    """Return the games' names of difficulties, in lower case."""
+    return [name.lower() for name in DIFFICULTIES]
+
+
+def characters() -> Iterable[str]:
+    """Return the names of the built-in characters."""
+    from dancetutor_cli.character.characters import BUILT_IN
+
+    return BUILT_IN

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.commands.arguments import GivenPath, Number, WholeNumber, note
+from dancetutor_cli.commands.arguments import GivenPath, Number, WholeNumber, folder, named, note
 from dancetutor_cli.commands.shared_options import (
     DanceOptions,
     character_option,
@@ -20,7 +20,6 @@ from dancetutor_cli.commands.shared_options import (
     ragdoll_options,
     section_option,
 )
-from dancetutor_cli.commands.tab_names import folder, named
 from dancetutor_cli.film.choices import LEAST_SIDE, MOST_SIDE, QUALITIES, RENDERERS, parse_ahead
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.languages import ENGLISH
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.choices import Quality, RendererKind
     from dancetutor_cli.film.clock import Practice
     from dancetutor_cli.film.layout import Layout
-    from dancetutor_cli.film.media.film_formats import FilmFormat
+    from dancetutor_cli.film.media.encoder import FilmFormat
     from dancetutor_cli.film.work.request import FilmRequest
 
 MOST_LATE = 60_000.0  # limit of --sync-offset, milliseconds

@@ -156,7 +156,7 @@ def _changes(options: AnalyzeOptions, most_rows: int | None) -> Iterator[str]:
 def report_tech_counts(tasks: Sequence[AnalyzeTask], options: AnalyzeOptions, output: IO[str]) -> int:
     """`--tech-counts`: print the table and, with --full, every chart that differs. Returns the exit status."""
     from dancetutor_cli.lint.techniques import compare_techniques, read_game_counts
-    from dancetutor_cli.reports.tech_counts import chart_lines, table_lines
+    from dancetutor_cli.reports.pack import chart_lines, table_lines
 
     if options.format_name != "text":
         raise UsageError("--tech-counts prints only a Markdown table; leave --format out")

@@ -27,8 +27,7 @@ from dancetutor_cli.commands.shared_options import (
     verbose_option,
     yes_option,
 )
-from dancetutor_cli.film.media.encoder import Encoding, choose
-from dancetutor_cli.film.media.film_formats import FILES, FORMATS, PICTURES, target_of
+from dancetutor_cli.film.media.encoder import FILES, FORMATS, PICTURES, Encoding, choose, target_of
 from dancetutor_cli.reports.progress import FilmProgress
 from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.run.errors import UsageError

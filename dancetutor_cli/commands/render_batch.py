@@ -70,8 +70,7 @@ def render_batch(path: Path, selection: Selection, dance: DanceOptions, options:
 
 def _batch(path: Path, selection: Selection, dance: DanceOptions, options: RenderOptions) -> BatchRequest:
     """Return the request of the charts below `path`, with the format and the output folder of the options."""
-    from dancetutor_cli.film.media.encoder import Encoding, choose
-    from dancetutor_cli.film.media.film_formats import FORMATS, PICTURES
+    from dancetutor_cli.film.media.encoder import FORMATS, PICTURES, Encoding, choose
     from dancetutor_cli.film.work.batch import DEFAULT_NAME, BatchRequest, parse_meters, parse_shard
 
     frames = options.frames

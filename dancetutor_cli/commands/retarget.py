@@ -10,8 +10,14 @@ import click
 
 from dancetutor_cli.commands.arguments import GivenPath, warn
 from dancetutor_cli.commands.help_groups import GroupedCommand
-from dancetutor_cli.commands.motion_output import check_targets, write_report
-from dancetutor_cli.commands.shared_options import character_option, into, ragdoll_options, report_option
+from dancetutor_cli.commands.shared_options import (
+    character_option,
+    check_targets,
+    into,
+    ragdoll_options,
+    report_option,
+    write_report,
+)
 from dancetutor_cli.formats.writers import FORMATS, keys
 from dancetutor_cli.run.errors import UsageError, choose_text
 from dancetutor_cli.run.files import check_file, one_of, write_atomic

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import wraps
@@ -10,13 +11,23 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from dancetutor_cli.commands.arguments import GivenPath, Second, WholeNumber
-from dancetutor_cli.commands.tab_names import characters, difficulties, folder, named, steps_types
+from dancetutor_cli.commands.arguments import (
+    GivenPath,
+    Second,
+    WholeNumber,
+    characters,
+    difficulties,
+    folder,
+    named,
+    steps_types,
+)
 from dancetutor_cli.run.errors import UsageError, choose_text
+from dancetutor_cli.run.files import check_file, write_atomic
 from dancetutor_cli.run.reading import config_names
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.selection import Selection
+    from dancetutor_cli.dance.quality.figures import MotionReport
     from dancetutor_cli.dance.request import DanceRequest
 
 TABLE = "-"  # the value of --report without a file
@@ -246,3 +257,30 @@ def _language(context: click.Context, option: click.Parameter, value: str | None
     if value is None or value in names:
         return value
     raise UsageError(f"there is no language '{value}'{choose_text(value, names)}")
+
+
+# The motion of a dancer as output: `--report` and `--plot` of `animate` and `retarget`.
+
+
+def check_targets(report_to: str | None, plot: Path | None) -> None:
+    """Raise UsageError for a report or a plot that could not be written. report_to : as `report_option` gives it"""
+    if plot is not None:
+        check_file(plot, (".svg", ".png"))
+    if report_to is not None and report_to != TABLE:
+        check_file(Path(report_to), (".json",), or_device=True)
+
+
+def write_report(report: MotionReport, report_to: str | None, plot: Path | None) -> None:
+    """Print a report as a table if `report_to` is set; write it as JSON and as a diagram if files are named."""
+    from dancetutor_cli.reports.motion_report import as_json, print_report, write_plot
+
+    if report_to is not None:
+        print_report(report)
+        for note in report.notes:
+            click.echo(f"note: {note}")
+        if report_to != TABLE:
+            write_atomic(Path(report_to), (json.dumps(as_json(report), indent=1) + "\n").encode())
+            click.echo(f"{report_to}: the report")
+    if plot is not None:
+        write_plot(plot, report)
+        click.echo(f"{plot}: the plot")

@@ -26,9 +26,9 @@ last.
     changes                       numbers that change over a song
     clearance, gait               a foot's path in the air, for `foot_path`; how the body moves with the steps of a walk
     waits, face                   the dancer's movements while she waits; lids, smiles and eyes
-    request, two, performance     the user's options; two dancers on one pad; the dancers of a chart and their dance
-    pieces, bake, keys            the pieces of a song; the order of work for a piece; the times of its keys
-    kept, ends                    the store of baked pieces; the beginning and the end of a cut
+    request, performance          the user's options; the dancers of a chart and their dance, also of two on one pad
+    pieces, bake, keys            the pieces of a song, and their store; the order of work for a piece; the keys
+    ends                          the beginning and the end of a cut
     smoothing                     paths over time
     quadratic                     banded least squares with limits
 

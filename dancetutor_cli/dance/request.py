@@ -13,7 +13,7 @@ from dancetutor_cli.dance.settings import USUAL, load_settings
 from dancetutor_cli.feet.preset import PresetChoice, choice_of, mismatch, preset_for
 from dancetutor_cli.lint.sections import check_part, part_of
 from dancetutor_cli.run.errors import UsageError
-from dancetutor_cli.run.fingerprint import NAMED
+from dancetutor_cli.run.stored_files import NAMED
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
@@ -125,7 +125,7 @@ def read_chart(request: DanceRequest, section: str | None = None) -> ChartChoice
 
     section : checked here, so that an error in it is reported before a chart is read
     """
-    from dancetutor_cli.dance.two import check_alone
+    from dancetutor_cli.dance.performance import check_alone
 
     if section is not None:
         check_part(section)

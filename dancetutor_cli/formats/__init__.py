@@ -1,6 +1,6 @@
 """Motions in files: GLB, VRM, BVH, npz and moves as JSON, in and out.
 
 writers                       the writer of each suffix, for `animate` and `retarget`
-glb, bvh, npz, moves_json     the formats; key_times finds the keys of a joint, npz_arrays checks untrusted .npz files
+glb, bvh, npz, moves_json     the formats; npz_arrays checks untrusted .npz files
 captured                      reading of motions of other skeletons
 """

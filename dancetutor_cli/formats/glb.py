@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.character.materials import linear_from_srgb
 from dancetutor_cli.character.mesh import Character, Mesh
+from dancetutor_cli.dance.keys import key_times_of, reaches
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig import quaternion as quat
-from dancetutor_cli.formats.key_times import key_times_of, reaches
 from dancetutor_cli.run.files import write_atomic
 from dancetutor_cli.run.pictures import texture_bytes
 

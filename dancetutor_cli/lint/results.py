@@ -27,9 +27,8 @@ from dancetutor_cli.lint.findings import (
 )
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.files import CHART_SUFFIXES, SONG_SUFFIXES
-from dancetutor_cli.run.fingerprint import program_stamp
 from dancetutor_cli.run.reading import CHART_LIMIT, read_bytes
-from dancetutor_cli.run.stored_files import DAY, StoredFiles
+from dancetutor_cli.run.stored_files import DAY, StoredFiles, program_stamp
 from dancetutor_cli.run.trust import results_folder
 
 if TYPE_CHECKING:

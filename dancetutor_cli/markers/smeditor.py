@@ -14,7 +14,7 @@ from typing import Any
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.pack_files import song_stems
-from dancetutor_cli.feet.sme import FEET, FILE_NAME, OURS, overrides_of, place_in_type, tick_of
+from dancetutor_cli.feet.song_feet import FEET, FILE_NAME, OURS, overrides_of, place_in_type, tick_of
 from dancetutor_cli.markers.model import ChartFeet, FileChange, change_of, limbs_of_steps, old_content, removal_of
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import parse_json

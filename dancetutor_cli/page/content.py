@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.character.mesh import partner_of
+from dancetutor_cli.dance.keys import joint_groups, reaches
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import palm_points
 from dancetutor_cli.dance.rig.skeleton import Skeleton
@@ -21,7 +22,6 @@ from dancetutor_cli.film.scene.geometry import ABOVE, PackedMeshes, pack
 from dancetutor_cli.film.scene.props import JOINT, bar_matrix, with_bar
 from dancetutor_cli.film.scene.scene import PANEL, SOLE_RADIUS, TOE_AHEAD, Scene
 from dancetutor_cli.film.scene.shared import RING_SHARE, SHADOW_FADE
-from dancetutor_cli.formats.key_times import joint_groups, reaches
 from dancetutor_cli.page.document import Blob
 from dancetutor_cli.run.languages import load_language
 from dancetutor_cli.run.pictures import texture_bytes

@@ -5,8 +5,7 @@ brief, text_report            text for people: at most a screen, or everything
 terminal, progress            safe and coloured text; the progress of a film
 data_formats, code_formats    formats for programs; formats for code review
 rule_pages                    the documentation of a rule
-pack, pack_page               a pack as data and lines; a pack as a page
-tech_counts                   our technique counts beside the game's
+pack, pack_page               a pack as data and lines, with our technique counts beside the game's; a pack as a page
 sheet, sheet_places, sheet_drawing    the chart sheet
 motion_report, sync_plot      report and plot of `animate` and `retarget`; plot of `analyze --sync`
 svg                           pieces of SVG, for all pictures

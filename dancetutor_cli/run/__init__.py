@@ -6,8 +6,8 @@ schema, yaml_files      settings files as dataclasses, each error with its line
 languages               the texts for players, by language, from configs/languages
 pool                    workers in this process, in other processes (`worker_processes`) or on a cluster
 process, preload        the streams of this process, and Ctrl-C; the import that worker processes share
-fingerprint, trust      keys of stored results; the folders from which results and machine code are loaded
-stored_files            the files of stored results, and the removal of old ones
+stored_files            the keys and files of stored results, and the removal of old ones
+trust                   the folders from which results and machine code are loaded
 kernels                 functions that run as machine code, by numba
 ffmpeg, pictures, html  films and music; pictures; the frame of every HTML page
 """

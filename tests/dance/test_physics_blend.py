@@ -21,8 +21,8 @@ from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig.body import place, sole_points, world_transforms
 from dancetutor_cli.dance.settings import SettingsCourse, default_settings, load_settings, state_weights
 from dancetutor_cli.run.errors import FileError, UsageError
-from dancetutor_cli.run.fingerprint import fingerprint
 from dancetutor_cli.run.reading import charts_path, config_names
+from dancetutor_cli.run.stored_files import fingerprint
 
 DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
 LEGS = tuple(f"{s}_{n}" for s in "lr" for n in ("knee", "talocrural", "metatarsal"))

@@ -8,8 +8,8 @@ from physics_phrase import phrase
 
 from dancetutor_cli.character.retargeting import Retargeting, RetargetTask
 from dancetutor_cli.dance.motion import Motion, sample
-from dancetutor_cli.dance.physics.ankles import eased_ankles
 from dancetutor_cli.dance.physics.arms import push_arms_out
+from dancetutor_cli.dance.physics.legs import eased_ankles
 from dancetutor_cli.dance.physics.pipeline import CORRECTIONS, RagdollOptions
 from dancetutor_cli.dance.physics.plants import Plants
 from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, repinned

@@ -13,7 +13,7 @@ from dancetutor_cli.commands.analyze import command as analyze
 from dancetutor_cli.commands.animate import command as animate
 from dancetutor_cli.commands.render import command as render
 from dancetutor_cli.dance.motion import Motion
-from dancetutor_cli.film.media import film_formats
+from dancetutor_cli.film.media import encoder
 from dancetutor_cli.formats import writers
 from dancetutor_cli.reports import analyze_formats as reports
 from dancetutor_cli.run.reading import charts_path
@@ -46,7 +46,7 @@ def test_a_format_that_is_added_to_the_table_is_a_format(tmp_path: Path, monkeyp
 @pytest.mark.parametrize(("command", "name"), [(animate, "x.xyz"), (render, "x.xyz")])
 def test_another_suffix_is_refused_with_those_that_there_are(command: object, name: str, tmp_path: Path) -> None:
     run = CliRunner().invoke(command, [DEMO, "--index", "0", "-o", str(tmp_path / name)])  # type: ignore[arg-type]
-    known = (*writers.FORMATS, writers.MOVES) if command is animate else film_formats.FILES
+    known = (*writers.FORMATS, writers.MOVES) if command is animate else encoder.FILES
     assert run.exit_code == 2 or run.exception
     said = run.output + str(run.exception)
     assert all(suffix in said for suffix in known)
@@ -64,4 +64,4 @@ def test_the_help_lists_the_formats() -> None:
         text = CliRunner().invoke(command, ["--help"]).output
         assert all(name in text for name in table)
     text = CliRunner().invoke(render, ["--help"]).output
-    assert all(suffix in text for suffix in film_formats.FILES)
+    assert all(suffix in text for suffix in encoder.FILES)

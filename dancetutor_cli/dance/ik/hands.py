@@ -11,10 +11,9 @@ from dancetutor_cli.dance.ik.knees import Legs
 from dancetutor_cli.dance.motion import Bar, Grip
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import SIDES, hand_direction, palm_normal, palm_points
-from dancetutor_cli.dance.rig.limbs import KNEE, THIGH
+from dancetutor_cli.dance.rig.limbs import ARM, KNEE, THIGH, bone_lengths, middle_joint, square_to
 from dancetutor_cli.dance.rig.quaternion import UP
 from dancetutor_cli.dance.rig.skeleton import Skeleton
-from dancetutor_cli.dance.rig.two_bones import ARM, bone_lengths, middle_joint, square_to
 from dancetutor_cli.dance.settings_arms import ArmSettings, BarSettings
 from dancetutor_cli.dance.smoothing import smooth, soft_excess
 from dancetutor_cli.dance.units import Array, Flags

@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.foot_path import Feet
 from dancetutor_cli.dance.rig import quaternion as quat
-from dancetutor_cli.dance.rig.limbs import depth, leg_capsules
+from dancetutor_cli.dance.rig.limbs import LEG, bone_lengths, depth, leg_capsules, middle_joint, square_to
 from dancetutor_cli.dance.rig.skeleton import Skeleton
-from dancetutor_cli.dance.rig.two_bones import LEG, bone_lengths, middle_joint, square_to
 from dancetutor_cli.dance.settings_body import KneeSettings
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array

@@ -28,8 +28,8 @@ from dancetutor_cli.dance.physics.standing import (
 )
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import local_rotations, world_transforms
+from dancetutor_cli.dance.rig.limbs import ARM, LEG, Chain, hinge_axis
 from dancetutor_cli.dance.rig.skeleton import Skeleton
-from dancetutor_cli.dance.rig.two_bones import ARM, LEG, Chain, hinge_axis
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.feet.play import runs

@@ -10,10 +10,9 @@ import numpy as np
 
 from dancetutor_cli.chart.timing import heard
 from dancetutor_cli.dance.motion import Distances, Motion
-from dancetutor_cli.dance.physics.ankles import eased_ankles
 from dancetutor_cli.dance.physics.arms import clear_arms, push_arms_out
 from dancetutor_cli.dance.physics.blend import Blend, mean_distances, mean_poses
-from dancetutor_cli.dance.physics.legs import restore_mass_path, risen, soft_legs
+from dancetutor_cli.dance.physics.legs import eased_ankles, restore_mass_path, risen, soft_legs
 from dancetutor_cli.dance.physics.plants import Plants, flatten_toes, planted, release_rolling_feet, tidied
 from dancetutor_cli.dance.physics.pushes import (
     Actor,

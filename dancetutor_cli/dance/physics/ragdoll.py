@@ -10,8 +10,8 @@ import numpy as np
 
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
+from dancetutor_cli.dance.rig.limbs import hinge_axis
 from dancetutor_cli.dance.rig.skeleton import Skeleton
-from dancetutor_cli.dance.rig.two_bones import hinge_axis
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.errors import UsageError, choose_text
 

@@ -12,9 +12,8 @@ from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics.ragdoll import Bone, bend_and_twist, bones_of
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
-from dancetutor_cli.dance.rig.limbs import arm_in_torso
+from dancetutor_cli.dance.rig.limbs import ARM, TwoBones, arm_in_torso
 from dancetutor_cli.dance.rig.skeleton import LIMITS, Skeleton, beyond, within
-from dancetutor_cli.dance.rig.two_bones import ARM, TwoBones
 from dancetutor_cli.dance.smoothing import both_envelopes, smooth, soft_excess, upper_envelope
 from dancetutor_cli.dance.units import Array, Poses
 

@@ -16,8 +16,8 @@ from dancetutor_cli.dance.physics.plants import NEARLY, STEEPEST, Plants, Sole, 
 from dancetutor_cli.dance.physics.repin import AnkleTracks
 from dancetutor_cli.dance.quality.contact import SHORTEST, stand_frames
 from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.limbs import TwoBones
 from dancetutor_cli.dance.rig.skeleton import Skeleton
-from dancetutor_cli.dance.rig.two_bones import TwoBones
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array, Flags
 from dancetutor_cli.feet.play import runs

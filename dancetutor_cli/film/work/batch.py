@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from dancetutor_cli.chart.selection import FolderReader, Selection, UnreadableFile
-from dancetutor_cli.film.media.encoder import Encoding
-from dancetutor_cli.film.media.film_formats import PICTURES
+from dancetutor_cli.film.media.encoder import PICTURES, Encoding
 from dancetutor_cli.film.work import jobs as film_jobs
 from dancetutor_cli.film.work import segments
 from dancetutor_cli.film.work.jobs import ClosedFilm, FilmJob, FilmOutcome, OpenedFilm

@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.bake import mines_of
 from dancetutor_cli.dance.motion import Motion, shifted
-from dancetutor_cli.dance.performance import as_heard, pad_of, perform, play_of_all, playable, pooled, solve
+from dancetutor_cli.dance.performance import as_heard, pad_of, perform, place_on, play_of_all, playable, pooled, solve
 from dancetutor_cli.dance.quality.contact import feet_on_mines, mine_messages
-from dancetutor_cli.dance.two import place_on
 from dancetutor_cli.film.notes import OnMine
 from dancetutor_cli.film.work.request import FilmRequest, FilmSubject
 from dancetutor_cli.run.errors import UsageError

@@ -11,8 +11,7 @@ import numpy as np
 
 from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.film.clock import Moments
-from dancetutor_cli.film.media.encoder import Encoding, join
-from dancetutor_cli.film.media.film_formats import PICTURES
+from dancetutor_cli.film.media.encoder import PICTURES, Encoding, join
 from dancetutor_cli.film.work.records import FilmRecord, digest_of, move_segment, new_work_name, remove_work
 from dancetutor_cli.film.work.request import FilmRequest, film_key, look_up
 from dancetutor_cli.film.work.segments import PlanFile, Segment, film_of, segments, write_plan

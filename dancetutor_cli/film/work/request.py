@@ -16,7 +16,7 @@ from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.request import ChartChoice, DanceRequest, check_request, read_chart, section_of
 from dancetutor_cli.film.clock import Clock, Practice, passes_of, whole_song
 from dancetutor_cli.film.layout import FilmLook
-from dancetutor_cli.run.fingerprint import NAMED, file_hash, fingerprint, program_hash
+from dancetutor_cli.run.stored_files import NAMED, file_hash, fingerprint, program_hash
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song

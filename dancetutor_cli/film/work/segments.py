@@ -16,8 +16,7 @@ import numpy as np
 
 from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.feet.pads import load_pad
-from dancetutor_cli.film.media.encoder import Encoding, encode_segment
-from dancetutor_cli.film.media.film_formats import PICTURES
+from dancetutor_cli.film.media.encoder import PICTURES, Encoding, encode_segment
 from dancetutor_cli.film.work.records import digest_of
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.pool import Report, Task

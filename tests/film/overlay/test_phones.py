@@ -15,7 +15,7 @@ from dancetutor_cli.feet.limbs import limb_colours
 from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import FilmLook, load_layout
-from dancetutor_cli.film.media.film_formats import FORMATS
+from dancetutor_cli.film.media.encoder import FORMATS
 from dancetutor_cli.film.notes import Callout
 from dancetutor_cli.film.overlay import sprites
 from dancetutor_cli.film.overlay.diagram import DiagramRows, Lettering, NextRows, PadView

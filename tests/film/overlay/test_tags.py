@@ -13,7 +13,7 @@ from film_plans import film_plan
 from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import FilmLook, load_layout
-from dancetutor_cli.film.media.film_formats import FORMATS
+from dancetutor_cli.film.media.encoder import FORMATS
 from dancetutor_cli.film.notes import Callout
 from dancetutor_cli.film.overlay import sprites, text
 from dancetutor_cli.film.overlay.blit import Sprite

@@ -9,8 +9,7 @@ from typing import Any
 
 import pytest
 
-from dancetutor_cli.film.media.encoder import Encoding
-from dancetutor_cli.film.media.film_formats import PICTURES
+from dancetutor_cli.film.media.encoder import PICTURES, Encoding
 from dancetutor_cli.film.work import segments
 from dancetutor_cli.film.work.segments import PlanFile, Segment, render_segment
 
