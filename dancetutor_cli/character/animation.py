@@ -11,7 +11,7 @@ from dancetutor_cli.character.onto_skeleton import onto
 from dancetutor_cli.dance.motion import Cut, padded_from, shifted
 from dancetutor_cli.dance.performance import Performance, Performer
 from dancetutor_cli.dance.pieces import PieceRunner, in_turn
-from dancetutor_cli.feet.play import dropped_notes_message
+from dancetutor_cli.feet.unplayable import dropped_notes_message
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character

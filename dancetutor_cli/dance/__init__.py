@@ -3,7 +3,7 @@
 In this package "she" is the dancer, whatever character the user draws.
 
     feet.play.Play                  the feet that step each note, from the solver
-      |   feet.play                   removes the notes that cannot be played
+      |   feet.unplayable             removes the notes that cannot be played
       |   footwork.planner            rules: step, jump, gallop, hold, bracket, mine, sidestep, walk, shake
     plan.Plan                       when each foot leaves and lands, where, how; turns; palms; walks; contacts
       |   foot_path.both_feet         where a foot is at any time

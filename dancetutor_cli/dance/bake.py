@@ -39,7 +39,7 @@ from dancetutor_cli.dance.smoothing import sample_path
 from dancetutor_cli.dance.trajectory.posture import Trajectory, stepping
 from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.dance.waits import waiting_at
-from dancetutor_cli.feet.play import DroppedNote, without_unplayable
+from dancetutor_cli.feet.unplayable import DroppedNote, without_unplayable
 from dancetutor_cli.run.errors import DancetutorError
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""The keys of a motion: when a bake makes them, so that contacts also hold between them; the keys that a joint needs."""
+"""The keys of a motion: when a bake makes them, so that contacts also hold between them; those that a joint needs."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.units import Array
-from dancetutor_cli.feet.play import DroppedNote
+from dancetutor_cli.feet.unplayable import DroppedNote
 
 
 @dataclass(frozen=True, slots=True)

@@ -38,8 +38,9 @@ from dancetutor_cli.dance.request import ChartChoice, DanceRequest, check_reques
 from dancetutor_cli.dance.settings import load_settings
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.pads import load_pad
-from dancetutor_cli.feet.play import Play, prepare, without_unplayable
+from dancetutor_cli.feet.play import Play, prepare
 from dancetutor_cli.feet.solved import Solved, solve_song
+from dancetutor_cli.feet.unplayable import without_unplayable
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.pool import in_order
 

@@ -20,7 +20,7 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.settings import Span
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array
-from dancetutor_cli.feet.play import dropped_notes_message
+from dancetutor_cli.feet.unplayable import dropped_notes_message
 from dancetutor_cli.run.stored_files import StoredFiles, fingerprint, program_stamp
 from dancetutor_cli.run.trust import kept_folder
 

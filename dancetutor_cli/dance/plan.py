@@ -10,7 +10,7 @@ import numpy as np
 
 from dancetutor_cli.dance.motion import Contact, Grip
 from dancetutor_cli.dance.units import Array
-from dancetutor_cli.feet.play import DroppedNote
+from dancetutor_cli.feet.unplayable import DroppedNote
 
 # The moves of a foot. Each kind of move is a type, and has only the fields that it needs.
 

@@ -9,7 +9,7 @@ solved.solve_song             solves a song's charts
 solved.Solved                 a chart, its `play.Play`, its pad and preset
 
 limbs, play_json              names and letters of limbs; plays in the JSON of `analyze`
-move_spans                    crossovers and other moves of a play that last for several rows
+unplayable                    notes that nobody can play
 conditions                    which charts an entry of dancetutor.yaml applies to
 passages                      the hardest passages of a chart
 """

@@ -40,8 +40,8 @@ import numpy as np
 
 from dancetutor_cli.dance.motion import Bar, Contact, Grip, Ground, Motion
 from dancetutor_cli.dance.rig.skeleton import Skeleton
-from dancetutor_cli.feet.play import DroppedNote
 from dancetutor_cli.feet.preset import DropReason
+from dancetutor_cli.feet.unplayable import DroppedNote
 from dancetutor_cli.formats.npz_arrays import Field, read_arrays
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.files import write_atomic

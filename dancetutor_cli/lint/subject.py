@@ -17,9 +17,10 @@ from dancetutor_cli.chart.names import TICKS_PER_BEAT, is_lights
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.overrides import FeetProblem, Ignores, Overrides
 from dancetutor_cli.feet.pads import Pad
-from dancetutor_cli.feet.play import SAME_TIME, Ambiguity, StepKind, too_quick
+from dancetutor_cli.feet.play import Ambiguity, StepKind
 from dancetutor_cli.feet.preset import LEAP, DropReason, Preset
 from dancetutor_cli.feet.solved import Solved, solve_song
+from dancetutor_cli.feet.unplayable import SAME_TIME, too_quick
 from dancetutor_cli.lint.candidates import Candidates
 from dancetutor_cli.lint.meter.estimate import size
 from dancetutor_cli.lint.meter.score import Oddities, timing_oddities

@@ -14,8 +14,7 @@ import numpy as np
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet.limbs import Limb
-from dancetutor_cli.feet.move_spans import crossover_spans
-from dancetutor_cli.feet.play import Play
+from dancetutor_cli.feet.play import Play, crossover_spans
 from dancetutor_cli.markers.model import (
     ChartFeet,
     FileChange,

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from dancetutor_cli.feet.limbs import Limb
-from dancetutor_cli.feet.play import DroppedNote, Play, StepKind, dropped_notes_message, without_unplayable
+from dancetutor_cli.feet.play import Play, StepKind
 from dancetutor_cli.feet.preset import DropReason
+from dancetutor_cli.feet.unplayable import DroppedNote, dropped_notes_message, without_unplayable
 from tests.dance.bake_plays import LH, RH, L, R, pad, play
 
 LEFT, DOWN, UP, RIGHT = range(4)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.feet.limbs import LABELS, Limb
-from dancetutor_cli.feet.move_spans import CROSSED, FULL, crossover_spans, spans
+from dancetutor_cli.feet.play import CROSSED, FULL, crossover_spans, spans
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS, moves_and_turns
 from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.notes import Cue

@@ -13,9 +13,9 @@ import numpy as np
 
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet.limbs import Limb
-from dancetutor_cli.feet.move_spans import CROSSED, FULL, crossover_spans
-from dancetutor_cli.feet.play import MOVE
+from dancetutor_cli.feet.play import CROSSED, FULL, crossover_spans
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS, moves_and_turns
+from dancetutor_cli.feet.unplayable import UNPLAYABLE
 from dancetutor_cli.film.notes import Callout
 from dancetutor_cli.film.words import (
     IMPLIED_BY_BRACKET,
@@ -269,7 +269,7 @@ def _moves(pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[in
                 turned = turning_phrase(words[name], (play, row), pad, style.language)
                 yield _Move(ticks[row], ticks[row], turned)
                 continue
-            reason = f" ({why[ticks[row]]})" if name == MOVE and ticks[row] in why else ""
+            reason = f" ({why[ticks[row]]})" if name == UNPLAYABLE and ticks[row] in why else ""
             if "{" not in words[name] and not reason:
                 limbs = play.limb[row].tolist()
                 yield _Move(ticks[row], ticks[row], stepped_phrase(words[name], name, limbs, style.language))
