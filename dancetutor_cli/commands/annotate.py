@@ -25,9 +25,10 @@ from dancetutor_cli.commands.shared_options import (
     verbose_option,
 )
 from dancetutor_cli.markers.styles import STRIPPED, STYLES
-from dancetutor_cli.reports.terminal import coloured, safe
+from dancetutor_cli.reports.terminal import coloured
 from dancetutor_cli.run.errors import UsageError, choose_text
 from dancetutor_cli.run.files import check_folder
+from dancetutor_cli.run.foreign_text import safe
 
 if TYPE_CHECKING:
     from dancetutor_cli.markers.annotate import AnnotateOutcome, AnnotateRequest, Item

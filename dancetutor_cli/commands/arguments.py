@@ -16,9 +16,9 @@ from click.shell_completion import CompletionItem
 
 from dancetutor_cli.chart.names import COLUMNS, DIFFICULTIES
 from dancetutor_cli.chart.selection import find_files, without_links_out
-from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import UCS_SUFFIX, plain_name, write_atomic
+from dancetutor_cli.run.foreign_text import safe
 from dancetutor_cli.run.reading import config_names
 from dancetutor_cli.run.trust import exclude
 

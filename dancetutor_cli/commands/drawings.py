@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import check_file, write_atomic
+from dancetutor_cli.run.foreign_text import safe
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.analysis import AnalyzeTask, Drawable

@@ -15,8 +15,9 @@ from dancetutor_cli.commands.arguments import report_error, warn, within_folders
 from dancetutor_cli.lint.analysis import analyze_file
 from dancetutor_cli.lint.fix import FIXABLE, FixOutcome, FixTask, fix_file, pick
 from dancetutor_cli.lint.rule import rule_named
-from dancetutor_cli.reports.terminal import coloured, safe
+from dancetutor_cli.reports.terminal import coloured
 from dancetutor_cli.run.errors import UsageError, plural
+from dancetutor_cli.run.foreign_text import safe
 
 if TYPE_CHECKING:
     from dancetutor_cli.commands.analyze_options import AnalyzeOptions

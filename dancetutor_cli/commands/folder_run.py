@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.reports.terminal import failures_table, safe, safe_path
+from dancetutor_cli.reports.terminal import failures_table
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 from dancetutor_cli.run.files import make_folder
+from dancetutor_cli.run.foreign_text import safe, safe_path
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.selection import UnreadableFile

@@ -12,9 +12,9 @@ import click
 from dancetutor_cli.commands.arguments import GivenPath, Number
 from dancetutor_cli.commands.shared_options import combined
 from dancetutor_cli.lint.findings import AUTO, SCALES
-from dancetutor_cli.reports.terminal import safe, safe_path
 from dancetutor_cli.run.errors import UsageError, plural
 from dancetutor_cli.run.files import check_file, write_atomic
+from dancetutor_cli.run.foreign_text import safe, safe_path
 
 if TYPE_CHECKING:
     from dancetutor_cli.commands.analyze_options import AnalyzeOptions

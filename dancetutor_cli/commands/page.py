@@ -27,9 +27,9 @@ from dancetutor_cli.commands.shared_options import (
     selection_options,
     verbose_option,
 )
-from dancetutor_cli.reports.terminal import safe, safe_path
 from dancetutor_cli.run.errors import UsageError, plural
 from dancetutor_cli.run.files import check_file, check_folder, plain_name, write_atomic
+from dancetutor_cli.run.foreign_text import safe, safe_path
 
 if TYPE_CHECKING:
     from dancetutor_cli.page.work import PageRequest

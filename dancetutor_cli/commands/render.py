@@ -29,9 +29,9 @@ from dancetutor_cli.commands.shared_options import (
 )
 from dancetutor_cli.film.media.encoder import FILES, FORMATS, PICTURES, Encoding, choose, target_of
 from dancetutor_cli.reports.progress import FilmProgress
-from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import check_file, check_folder, make_folder, one_of, place_of, plain_name
+from dancetutor_cli.run.foreign_text import safe
 
 if TYPE_CHECKING:
     from dancetutor_cli.film.work.request import FilmRequest, FilmSubject

@@ -15,10 +15,9 @@ from dancetutor_cli.commands.arguments import LONG, note
 from dancetutor_cli.commands.film_options import RenderOptions, film_request
 from dancetutor_cli.commands.folder_run import FolderRun, JoinedWarnings
 from dancetutor_cli.reports.progress import FilmProgress
-from dancetutor_cli.reports.terminal import safe
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.files import check_file, check_folder, encoded
-from dancetutor_cli.run.foreign_text import json_without_commands
+from dancetutor_cli.run.foreign_text import json_without_commands, safe
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.selection import Selection

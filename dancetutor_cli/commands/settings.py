@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dancetutor_cli.commands.arguments import Source
-from dancetutor_cli.reports.terminal import safe_path
 from dancetutor_cli.run.errors import DancetutorError
+from dancetutor_cli.run.foreign_text import safe_path
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart

@@ -21,8 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.film.scene.gl.available import SHADERS, web_source
-from dancetutor_cli.run.html import page
 from dancetutor_cli.run.languages import Language, load_language
+from dancetutor_cli.run.markup import page
 from dancetutor_cli.run.reading import config_names
 
 # The numbers of a page: arrays in one compressed block, in a form that compresses well and is fast to read.

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 from dancetutor_cli.lint.findings import RANKS, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.reports.analyze_formats import Output, Report, Tally, measures_text
-from dancetutor_cli.reports.terminal import FIXED_BLANK, cut, safe, safe_path, terminal_of
+from dancetutor_cli.reports.terminal import FIXED_BLANK, cut, terminal_of
 from dancetutor_cli.reports.text_report import STYLES
 from dancetutor_cli.run.errors import plural
+from dancetutor_cli.run.foreign_text import safe, safe_path
 
 _SONG = 2  # limit of the files of one song: its .sm and its .ssc
 _MOST_UNREADABLE = 8

@@ -16,8 +16,7 @@ from dancetutor_cli.lint.rule_settings import default_rules
 from dancetutor_cli.reports.analyze_formats import Output, Report, Tally
 from dancetutor_cli.reports.data_formats import Entry, entries, relative
 from dancetutor_cli.reports.rule_pages import documentation
-from dancetutor_cli.reports.terminal import safe
-from dancetutor_cli.run.foreign_text import json_without_commands, write_command, xml_without_commands
+from dancetutor_cli.run.foreign_text import json_without_commands, safe, write_command, xml_without_commands
 
 # `--format sarif`: SARIF 2.1.0, which code scanning and editors read.
 

@@ -16,8 +16,7 @@ from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.lint.findings import TECH_COUNTS, Cause, Estimate, Finding, ScoreEstimate, Sync
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.reports.analyze_formats import Output, Report, Tally
-from dancetutor_cli.reports.terminal import safe, safe_path
-from dancetutor_cli.run.foreign_text import as_text, json_without_commands
+from dancetutor_cli.run.foreign_text import as_text, json_without_commands, safe, safe_path
 
 # The common part of all formats for programs: one entry per finding, with its file, its chart and a fingerprint.
 

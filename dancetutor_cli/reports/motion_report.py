@@ -10,9 +10,9 @@ import numpy as np
 
 from dancetutor_cli.dance.quality.figures import MotionReport
 from dancetutor_cli.dance.units import Array
-from dancetutor_cli.reports.svg import tag
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import write_atomic
+from dancetutor_cli.run.markup import tag
 from dancetutor_cli.run.pictures import picture_bytes
 
 if TYPE_CHECKING:

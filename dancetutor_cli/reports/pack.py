@@ -14,8 +14,9 @@ from dancetutor_cli.lint.findings import RANKS, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.lint.techniques import TEN, ComparedChart, TechniqueComparison
 from dancetutor_cli.reports.analyze_formats import measures_text
-from dancetutor_cli.reports.terminal import cut, safe, safe_path
+from dancetutor_cli.reports.terminal import cut
 from dancetutor_cli.run.errors import plural
+from dancetutor_cli.run.foreign_text import safe, safe_path
 
 # The techniques that are counted in a pack's charts: name -> moves.
 TECHNIQUES = {

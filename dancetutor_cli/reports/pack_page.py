@@ -9,10 +9,10 @@ from html import escape
 
 import dancetutor_cli
 from dancetutor_cli.reports.pack import TECHNIQUES, Pack, PackChart
-from dancetutor_cli.reports.svg import tag
-from dancetutor_cli.reports.terminal import safe, safe_path
-from dancetutor_cli.run import html
+from dancetutor_cli.run import markup
 from dancetutor_cli.run.errors import plural
+from dancetutor_cli.run.foreign_text import safe, safe_path
+from dancetutor_cli.run.markup import tag
 
 # Pictures of a pack as inline SVG: bars of meters, dots over meters, shares of facing. Tooltips name the chart.
 
@@ -189,7 +189,7 @@ def html_page(pack: Pack, changes: Sequence[str] = ()) -> str:
         body.append(_techniques(of_type))
     body.append(_table(charts))
     made = f'<meta name="generator" content="dancetutor {escape(dancetutor_cli.__version__)}">\n'
-    return html.page(html.NO_SCRIPT, name, _STYLE, "".join(body), head=made)
+    return markup.page(markup.NO_SCRIPT, name, _STYLE, "".join(body), head=made)
 
 
 def _figures(charts: Sequence[PackChart]) -> Iterable[str]:

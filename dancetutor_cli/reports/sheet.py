@@ -18,10 +18,10 @@ from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.reports.analyze_formats import clock, moment
 from dancetutor_cli.reports.sheet_drawing import HOLD_OPACITY, Sheet, badge, definitions, mark, system, unsure_rows
 from dancetutor_cli.reports.sheet_places import SheetStyle, lay_out, sheet_style
-from dancetutor_cli.reports.svg import tag, text, title
-from dancetutor_cli.reports.terminal import safe
-from dancetutor_cli.run import html
+from dancetutor_cli.run import markup
+from dancetutor_cli.run.foreign_text import safe
 from dancetutor_cli.run.languages import ENGLISH
+from dancetutor_cli.run.markup import tag, text, title
 
 _LEFT = 12.0
 _FACTS, _FACT = 66.0, 14.0  # y of the first line of facts, and the spacing of these lines
@@ -64,7 +64,7 @@ def html_page(sheets: Sequence[tuple[Sheet, Sequence[str]]]) -> str:
     name = safe(song.title) or song.path.name
     body = "\n".join(_article(sheet, facts) for sheet, facts in sheets)
     main = f"<main>\n<h1>{escape(name)}</h1>\n{body}\n</main>\n"
-    return html.page(html.NO_SCRIPT, name, f"\n{_page_css(style)}", main, language=sheets[0][0].language)
+    return markup.page(markup.NO_SCRIPT, name, f"\n{_page_css(style)}", main, language=sheets[0][0].language)
 
 
 def _article(sheet: Sheet, facts: Sequence[str]) -> str:

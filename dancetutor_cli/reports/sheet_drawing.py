@@ -15,9 +15,9 @@ from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.reports.analyze_formats import clock
 from dancetutor_cli.reports.sheet_places import LETTERS, SheetLayout, SheetStyle
-from dancetutor_cli.reports.svg import number, tag, text, title
-from dancetutor_cli.reports.terminal import safe
+from dancetutor_cli.run.foreign_text import safe
 from dancetutor_cli.run.languages import ENGLISH, Language, load_language
+from dancetutor_cli.run.markup import number, tag, text, title
 
 HOLD_OPACITY = 0.55
 _BAND_OPACITY = 0.2

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.lint.findings import ITG, NULL
 from dancetutor_cli.lint.sync import Judgement
 from dancetutor_cli.reports.analyze_formats import clock
-from dancetutor_cli.reports.svg import number, tag, text
+from dancetutor_cli.run.markup import number, tag, text
 from dancetutor_cli.run.pictures import texture_bytes
 
 _WIDTH, _HEIGHT = 900, 420

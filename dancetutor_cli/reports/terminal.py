@@ -1,4 +1,4 @@
-"""Text for terminals: safe characters, width and colours, coloured diffs, tables of failures."""
+"""Text for terminals: width and colours, coloured diffs, tables of failures."""
 
 from __future__ import annotations
 
@@ -13,25 +13,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 
-# Text from untrusted files, made safe to print: no control characters, no escapes, one line.
-
-# Controls (C0, DEL, C1), line and paragraph separators, and characters that change the direction of text.
-_UNSAFE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\u200e\u200f\u202a-\u202e\u2066-\u2069\ufeff\ufffe\uffff]+")
-
-
-def safe(text: str) -> str:
-    """Return `text` on one line, without characters that move a cursor, change a colour or hide text."""
-    return _UNSAFE.sub(" ", text).encode("utf-8", "replace").decode("utf-8").strip()
-
-
-def safe_path(path: str) -> str:
-    """Return a path for printing: as by `safe`, and bytes that are not UTF-8 become "�"."""
-    try:
-        name = os.fsencode(path)
-    except UnicodeEncodeError:  # a name from a cache, written under an encoding with more letters
-        name = path.encode("utf-8", "surrogateescape")
-    return _UNSAFE.sub("?", name.decode("utf-8", "replace"))
-
+from dancetutor_cli.run.foreign_text import safe
 
 # The width and colours of a stream; rich is used only if the stream may be a terminal.
 

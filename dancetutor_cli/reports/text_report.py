@@ -11,7 +11,8 @@ from dancetutor_cli.feet.limbs import hex_colour, limb_colours
 from dancetutor_cli.lint.findings import ExcerptRow, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.reports.analyze_formats import Output, Report, Tally, moment
-from dancetutor_cli.reports.terminal import Terminal, can_encode, safe, safe_path, terminal_of
+from dancetutor_cli.reports.terminal import Terminal, can_encode, terminal_of
+from dancetutor_cli.run.foreign_text import safe, safe_path
 
 # The rows around a finding as arrows with L and R, in characters.
 

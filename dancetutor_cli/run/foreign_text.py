@@ -1,10 +1,31 @@
-"""Escaping of untrusted text, so that it is not a formula in a spreadsheet or a command in a CI log."""
+"""Untrusted text made harmless: for a terminal, for a cell of a spreadsheet, for the log of a CI job."""
 
 from __future__ import annotations
 
 import io
+import os
 import re
 from typing import IO
+
+# Text from untrusted files, made safe to print: no control characters, no escapes, one line.
+
+# Controls (C0, DEL, C1), line and paragraph separators, and characters that change the direction of text.
+_UNSAFE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\u200e\u200f\u202a-\u202e\u2066-\u2069\ufeff\ufffe\uffff]+")
+
+
+def safe(text: str) -> str:
+    """Return `text` on one line, without characters that move a cursor, change a colour or hide text."""
+    return _UNSAFE.sub(" ", text).encode("utf-8", "replace").decode("utf-8").strip()
+
+
+def safe_path(path: str) -> str:
+    """Return a path for printing: as by `safe`, and bytes that are not UTF-8 become "�"."""
+    try:
+        name = os.fsencode(path)
+    except UnicodeEncodeError:  # a name from a cache, written under an encoding with more letters
+        name = path.encode("utf-8", "surrogateescape")
+    return _UNSAFE.sub("?", name.decode("utf-8", "replace"))
+
 
 # Cells of a CSV file that a spreadsheet reads as text, whatever they begin with, and their conversion back.
 

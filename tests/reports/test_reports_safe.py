@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from dancetutor_cli.reports.terminal import safe, safe_path
+from dancetutor_cli.run.foreign_text import safe, safe_path
 
 
 @pytest.mark.parametrize(
