@@ -11,6 +11,7 @@ from typing import IO, TYPE_CHECKING
 import click
 
 from dancetutor_cli.chart.selection import Selection, find_files, note_bytes
+from dancetutor_cli.commands import GroupedCommand
 from dancetutor_cli.commands.analyze_options import AnalyzeOptions
 from dancetutor_cli.commands.arguments import (
     GivenPath,
@@ -27,7 +28,6 @@ from dancetutor_cli.commands.arguments import (
 )
 from dancetutor_cli.commands.drawings import check_plot, check_sheet, write_plot, write_sheet
 from dancetutor_cli.commands.first_run import announce_compiling
-from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.commands.pack import (
     PackReport,
     check_comparison,
@@ -220,7 +220,7 @@ def command(selection: Selection, options: AnalyzeOptions) -> int:
         return _watch(request, options)
     files = sources(options.paths, options.stdin_filename, options.exclude)
     if options.show_settings:
-        from dancetutor_cli.commands.settings import show_settings
+        from dancetutor_cli.commands.analyze_options import show_settings
 
         return show_settings(LintRun(request), files)
     return _run(LintRun(request), files, options)

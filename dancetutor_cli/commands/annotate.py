@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 import click
 
 from dancetutor_cli.chart.selection import Selection, find_files, note_bytes
+from dancetutor_cli.commands import GroupedCommand
 from dancetutor_cli.commands.arguments import GivenPath, WholeNumber, report_error, warn, within_folders
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.folder_run import JoinedWarnings
-from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.commands.shared_options import (
     exclude_option,
     into,

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from dancetutor_cli.commands import GroupedCommand
 from dancetutor_cli.commands.arguments import GivenPath, warn
-from dancetutor_cli.commands.help_groups import GroupedCommand
 from dancetutor_cli.commands.shared_options import (
     character_option,
     check_targets,

@@ -12,7 +12,7 @@ import numpy as np
 
 from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.commands.help_groups import GroupedCommand
+from dancetutor_cli.commands import GroupedCommand
 from dancetutor_cli.commands.shared_options import quiet_option
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.feet.preset import DEFAULT_PRESET

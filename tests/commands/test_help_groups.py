@@ -10,8 +10,7 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from dancetutor_cli.commands import COMMANDS, cli
-from dancetutor_cli.commands.help_groups import GROUPS, RENAMED
+from dancetutor_cli.commands import COMMANDS, GROUPS, RENAMED, cli
 
 
 def command_named(name: str) -> click.Command:
