@@ -83,7 +83,7 @@ def test_values_that_no_rule_can_use_are_refused(option: str, words: str, tmp_pa
 def test_every_kind_of_note_can_be_forbidden() -> None:
     from dancetutor_cli.chart.reader import parse
     from dancetutor_cli.lint.note_facts import NoteFacts
-    from dancetutor_cli.lint.rules.rows import KINDS
+    from dancetutor_cli.lint.rules.notes import KINDS
 
     rows = "1MK0\n2L40\n303F\n1110\n1001\n"
     song = parse(f"#TITLE:T;\n#BPMS:0=120;\n#NOTES:dance-single::Hard:9::\n{rows};\n".encode(), Path("x.sm"))
