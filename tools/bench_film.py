@@ -60,7 +60,7 @@ def child(output: str, kind: str) -> None:
     from dancetutor_cli.film.media.encoder import Encoding
     from dancetutor_cli.film.work.batch import Batch, film_workers
     from dancetutor_cli.film.work.jobs import FilmJob
-    from dancetutor_cli.film.work.records import FilmRecords
+    from dancetutor_cli.film.work.segments import FilmRecords
     from dancetutor_cli.run.pool import default_jobs
 
     request = _request(kind)

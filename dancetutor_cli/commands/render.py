@@ -228,7 +228,7 @@ def _allow_long(subject: FilmSubject, file: Path, yes: bool) -> None:
 def _make(request: FilmRequest, subject: FilmSubject, target: Path, kind: str, options: RenderOptions) -> None:
     from dancetutor_cli.film.work.batch import Batch, film_workers
     from dancetutor_cli.film.work.jobs import FilmJob
-    from dancetutor_cli.film.work.records import FilmRecords
+    from dancetutor_cli.film.work.segments import FilmRecords
     from dancetutor_cli.run.pool import default_jobs
 
     say = (lambda _warnings: None) if options.quiet else warn

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 def render_batch(path: Path, selection: Selection, dance: DanceOptions, options: RenderOptions) -> None:
     """Make a film of every matching chart below `path`. Exits with 2 if a film failed."""
     from dancetutor_cli.film.work.batch import Batch, film_list
-    from dancetutor_cli.film.work.records import find_records
+    from dancetutor_cli.film.work.segments import find_records
     from dancetutor_cli.run.pool import default_jobs
 
     if options.scheduler:  # its workers have other working folders

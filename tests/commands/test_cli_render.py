@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from dancetutor_cli.__main__ import main
-from dancetutor_cli.film.work.records import WORK
+from dancetutor_cli.film.work.segments import WORK
 from dancetutor_cli.run.reading import charts_path
 
 pytestmark = pytest.mark.usefixtures("own_records")

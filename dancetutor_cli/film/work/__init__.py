@@ -4,12 +4,12 @@ request.FilmRequest           what the user wants; a `jobs.FilmJob` adds the fil
   |   request.look_up           the chart, read and checked -> `FilmSubject`
   |   planning.prepare          the plan, with all parts on the film's clock -> `PreparedFilm`
   |   jobs.open_film            the work before the first frame, with these two -> `OpenedFilm`
-  |   segments                  pieces of a film that any process draws and encodes
+  |   segments                  pieces of a film that any process draws and encodes; `FilmRecord`, for later runs
   |   jobs.close_film           the work after the last frame -> `ClosedFilm`
 jobs.FilmOutcome              what became of the job; its poster, subtitles and poses are written by `jobs`, too
 
 film_dance                    the play and the motions that the film shows
-batch, records                one film or the films of folders; `FilmRecord`, kept of each film for a later run
+batch                         one film or the films of folders
 motion_film                   a film of a motion without a chart
 worker_imports, worker_imports_gl   the common imports of the processes that draw
 """

@@ -16,9 +16,15 @@ from dancetutor_cli.film.media.encoder import PICTURES, Encoding
 from dancetutor_cli.film.work import jobs as film_jobs
 from dancetutor_cli.film.work import segments
 from dancetutor_cli.film.work.jobs import ClosedFilm, FilmJob, FilmOutcome, OpenedFilm
-from dancetutor_cli.film.work.records import FilmRecord, FilmRecords, find_records, new_work_name, remove_work
 from dancetutor_cli.film.work.request import FilmRequest
-from dancetutor_cli.film.work.segments import render_segment
+from dancetutor_cli.film.work.segments import (
+    FilmRecord,
+    FilmRecords,
+    find_records,
+    new_work_name,
+    remove_work,
+    render_segment,
+)
 from dancetutor_cli.run.errors import DancetutorError, FileError, UsageError, choose_text
 from dancetutor_cli.run.ffmpeg import EncoderError
 from dancetutor_cli.run.files import FreeNames, plain_name

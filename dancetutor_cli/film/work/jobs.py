@@ -12,9 +12,19 @@ import numpy as np
 from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.film.clock import Moments
 from dancetutor_cli.film.media.encoder import PICTURES, Encoding, join
-from dancetutor_cli.film.work.records import FilmRecord, digest_of, move_segment, new_work_name, remove_work
 from dancetutor_cli.film.work.request import FilmRequest, film_key, look_up
-from dancetutor_cli.film.work.segments import PlanFile, Segment, film_of, segments, write_plan
+from dancetutor_cli.film.work.segments import (
+    FilmRecord,
+    PlanFile,
+    Segment,
+    digest_of,
+    film_of,
+    move_segment,
+    new_work_name,
+    remove_work,
+    segments,
+    write_plan,
+)
 from dancetutor_cli.run.errors import DancetutorError, FileError
 from dancetutor_cli.run.files import encoded, place_of, write_atomic
 from dancetutor_cli.run.pictures import picture_bytes

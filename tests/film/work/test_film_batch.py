@@ -18,7 +18,7 @@ from dancetutor_cli.film.work import jobs as film_jobs
 from dancetutor_cli.film.work import segments
 from dancetutor_cli.film.work.batch import Batch, BatchRequest, film_list, parse_meters, parse_shard
 from dancetutor_cli.film.work.jobs import FilmJob, FilmOutcome
-from dancetutor_cli.film.work.records import WORK
+from dancetutor_cli.film.work.segments import WORK
 from dancetutor_cli.run.errors import FileError, UsageError
 from dancetutor_cli.run.pool import FinishedWork, SerialWorkers
 

@@ -12,9 +12,8 @@ from test_film_batch import NOTES, Stopping, batch_request, run, write_song
 from dancetutor_cli.film.work import segments as film_segments
 from dancetutor_cli.film.work.batch import film_list
 from dancetutor_cli.film.work.jobs import FilmJob
-from dancetutor_cli.film.work.records import WORK, FilmRecord, find_records
 from dancetutor_cli.film.work.request import film_key, look_up
-from dancetutor_cli.film.work.segments import PlanFile, segments
+from dancetutor_cli.film.work.segments import WORK, FilmRecord, PlanFile, find_records, segments
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.pool import SerialWorkers
 

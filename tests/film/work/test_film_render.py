@@ -30,7 +30,7 @@ from dancetutor_cli.film.work import planning, segments
 from dancetutor_cli.film.work.batch import Batch, film_workers
 from dancetutor_cli.film.work.jobs import FilmJob
 from dancetutor_cli.film.work.planning import PreparedFilm
-from dancetutor_cli.film.work.records import FilmRecords
+from dancetutor_cli.film.work.segments import FilmRecords
 from dancetutor_cli.run import ffmpeg
 from dancetutor_cli.run.errors import DancetutorError
 
