@@ -31,7 +31,7 @@ from dancetutor_cli.dance.performance import perform, solve
 from dancetutor_cli.dance.physics.blend import Blend
 from dancetutor_cli.dance.physics.pipeline import RagdollOptions
 from dancetutor_cli.dance.physics.style import load_style
-from dancetutor_cli.dance.pieces import MARGIN, RagdollStyle, piece_of
+from dancetutor_cli.dance.pieces import MORE_PLANNED, RagdollStyle, piece_of
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig.body import place, sole_points, world_transforms
 from dancetutor_cli.run.reading import config_names
@@ -89,7 +89,7 @@ def legs_of(chart: Wanted, style: str, length: float) -> Legs:
     start = section_start(stepped, chart.place, length)
     span = (start, start + length)
     ragdoll = RagdollStyle(Blend.of(load_style(style)), RagdollOptions())
-    motion = bake_piece(piece_of(dancer.plan, dancer.context, RATE, (span, span, MARGIN), ragdoll)).motion
+    motion = bake_piece(piece_of(dancer.plan, dancer.context, RATE, (span, span, MORE_PLANNED), ragdoll)).motion
     times = np.arange(np.ceil(start * RATE), np.floor(span[1] * RATE)) / RATE
     feet = both_feet(dancer.plan.feet, times, dancer.context.settings)
     return _legs(motion, times, np.column_stack([~foot.down for foot in feet]))

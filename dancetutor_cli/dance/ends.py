@@ -17,7 +17,7 @@ from dancetutor_cli.dance.footwork.homing import homeward
 from dancetutor_cli.dance.keys import Keys
 from dancetutor_cli.dance.motion import Cut, Motion, sample
 from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, repinned
-from dancetutor_cli.dance.pieces import MARGIN, OVERLAP, Piece, RagdollStyle, piece_of, track_from
+from dancetutor_cli.dance.pieces import OVERLAP, MORE_PLANNED, Piece, RagdollStyle, piece_of, track_from
 from dancetutor_cli.dance.plan import FootTrack, Plan
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.settings import Span
@@ -106,14 +106,14 @@ def exit_of(plan: Plan, span: Span, context: Context) -> Plan:
 
 def entrance_piece(plan: Plan, context: Context, fps: float, cut: Cut, ragdoll: RagdollStyle | None) -> Piece:
     """Return the piece of an entrance: the dancer stands before the cut, and then the piece turns into the dance."""
-    baked = (cut.start - MARGIN, min(cut.steps_from + CROSSING, cut.end) + MARGIN)
+    baked = (cut.start - MORE_PLANNED, min(cut.steps_from + CROSSING, cut.end) + MORE_PLANNED)
     return piece_of(plan, context, fps, (baked, baked, OVERLAP), ragdoll)
 
 
 def exit_piece(plan: Plan, context: Context, fps: float, span: Span, ragdoll: RagdollStyle | None = None) -> Piece:
     """Return the piece of an exit. span : from the beginning of the exit to the end of the cut, seconds"""
     baked = (span[0] - CROSSING - OVERLAP, span[1])
-    return piece_of(plan, replace(context, stays=True), fps, (baked, baked, MARGIN), ragdoll)
+    return piece_of(plan, replace(context, stays=True), fps, (baked, baked, MORE_PLANNED), ragdoll)
 
 
 def with_entrance(dance: Motion, entrance: Motion, cut: Cut) -> Motion:

@@ -29,7 +29,7 @@ from dancetutor_cli.feet.play import runs
 
 RATE, BODY_RATE = 30.0, 60.0  # checks per second whether the rail is within reach, and samples of the body's path
 # seconds of a song that are handled together, and how far beyond them the start and the end lie
-PART, MARGIN = 60.0, 4.0
+PART, PART_MARGIN = 60.0, 4.0
 TRUNK_ASIDE, TRUNK_DEEP = 0.203, 0.163  # metres, half axes of the trunk with a forearm's thickness and some air
 ALONG = np.linspace(0.15, 1.0, 5)  # points of the forearm and the hand that are checked
 ARMS_BACK = 0.022  # metres that the centre of mass lies farther back when the hands are on the rail
@@ -65,7 +65,8 @@ def trunk_of(plan: Plan, times: Array, context: Context) -> BarTrunk:
 def _part(plan: Plan, at: Array, context: Context) -> BarTrunk:
     """Return the upper body at the times `at`, by a rough bake without the hands on the bar."""
     skeleton = context.skeleton
-    grid = np.arange(np.floor((at[0] - MARGIN) * BODY_RATE), np.ceil((at[-1] + MARGIN) * BODY_RATE) + 1) / BODY_RATE
+    low, high = (at[0] - PART_MARGIN) * BODY_RATE, (at[-1] + PART_MARGIN) * BODY_RATE
+    grid = np.arange(np.floor(low), np.ceil(high) + 1) / BODY_RATE
     feet = both_feet(plan.feet, grid, context.settings)
     body = body_trajectory(plan, grid, feet, context)
     targets = ik_targets(replace(plan, grips=()), body, feet, grid, context)
@@ -254,7 +255,7 @@ def _chance(plan: Plan, second: float) -> tuple[float, float]:
 
 # metres to each side; a place there may be better because a hand can stay longer
 GRIP_OFFSETS = (0.0, 0.05, -0.05, 0.1, -0.1)
-ROUNDS = 2  # rounds of finding out how long a hand that crosses over may stay
+CROSSING_ROUNDS = 2  # rounds of finding out how long a hand that crosses over may stay
 LOOK = 10.0  # seconds that are checked together for how long a hand may stay
 
 
@@ -276,7 +277,7 @@ def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
     places = holds, np.tile(apart[:, None], 2)
     found: list[Grip] = []
     wanted = turns(plan, times, trunk, busy, context)
-    for _ in range(ROUNDS):
+    for _ in range(CROSSING_ROUNDS):
         if wanted:  # the body turns for the grips that were found, not for those that were wanted
             trunk = trunk_of(replace(plan, grips=(*leaning_back, *wanted)), times, context)
             found = list(crossings(wanted, times, trunk, busy, context))

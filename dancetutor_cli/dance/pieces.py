@@ -36,7 +36,7 @@ LENGTH = 90.0  # seconds of a piece, approximately
 LONGEST = 135.0  # seconds; a song up to this length is one piece
 AFTER = 1.0  # seconds; heels rise for swings that begin within this time
 WITHIN = 20.0  # seconds around the even end of a piece in which the best end is searched
-MARGIN = 1.0  # seconds beyond both ends of the baked part that are planned and smoothed
+MORE_PLANNED = 1.0  # seconds beyond both ends of the baked part that are planned and smoothed
 OVERLAP = 5.0  # seconds beyond its ends that a piece is planned and baked; differences are gone by then
 BLEND = 0.5  # seconds before a piece's end in which it turns into the next one
 
@@ -99,7 +99,7 @@ def pieces_of(plan: Plan, context: Context, fps: float, ragdoll: RagdollStyle | 
     pieces = []
     plan = replace(plan, touches=plan.contacts)  # each contact lasts until the foot leaves, in all pieces alike
     for first, last in pairwise(piece_ends(plan, start, end)):
-        before, after = (first if first == start else first - OVERLAP), (MARGIN if last == end else OVERLAP)
+        before, after = (first if first == start else first - OVERLAP), (MORE_PLANNED if last == end else OVERLAP)
         pieces.append(piece_of(plan, context, fps, ((before, last), (first, last), after), ragdoll))
     return pieces
 
@@ -109,8 +109,8 @@ def piece_of(
 ) -> Piece:
     """Return one piece. times : the baked part, the kept part of it, and the seconds that are planned beyond its end"""
     (before, last), kept, after = times
-    part = trimmed(plan, before - MARGIN, last + after)
-    span = (float(np.floor(4 * (before - MARGIN)) / 4), last + after)
+    part = trimmed(plan, before - MORE_PLANNED, last + after)
+    span = (float(np.floor(4 * (before - MORE_PLANNED)) / 4), last + after)
     contacts = tuple(one for one in plan.contacts if before <= one.start <= last)
     ground = context.ground if plan.walks else None
     return Piece(part, context, fps, contacts, ground, (before, last), kept, span, ragdoll)

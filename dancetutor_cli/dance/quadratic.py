@@ -122,7 +122,7 @@ def _solve_one(factor: Array, right: Array) -> Array:
 # length of the song.
 
 TOLERANCE = 1e-6
-ROUNDS, MORE_ROUNDS = 60, 240  # rounds of the method, and of its second try, with softer limits
+SOLVER_ROUNDS, MORE_ROUNDS = 60, 240  # rounds of the method, and of its second try, with softer limits
 SOFTER, SOFT = 100.0, 0.01  # factor of the softness of these limits in the second try, and the softness of hard limits
 
 
@@ -187,7 +187,7 @@ def solve(problem: BandedLeastSquares, limits: list[Limits], most: int | None = 
     so that e = give z needs no unknown. Newton's steps towards s_i z_i = mu by S. Mehrotra, *On the implementation of a
     primal-dual interior point method*, SIAM Journal on Optimization, 1992: a predictor with mu = 0, then a corrector.
 
-    most : largest number of rounds, None for `ROUNDS`
+    most : largest number of rounds, None for `SOLVER_ROUNDS`
     """
     if problem.right.shape[1] != 1:
         raise ValueError("limits are for one path at a time")
@@ -210,7 +210,7 @@ def solve(problem: BandedLeastSquares, limits: list[Limits], most: int | None = 
     width = reach - np.argmax(every[:, ::-1] != 0.0, axis=1)  # the columns behind it are zero
     stacked = _Rows(np.concatenate(starts), width, every, np.concatenate(highs), np.concatenate(gives))
     right = np.ascontiguousarray(problem.right[:, 0])
-    x, found, rounds = _interior_point(problem.bands, right, stacked, TOLERANCE, most or ROUNDS)
+    x, found, rounds = _interior_point(problem.bands, right, stacked, TOLERANCE, most or SOLVER_ROUNDS)
     return Solution(x, bool(found), int(rounds))
 
 

@@ -29,7 +29,7 @@ from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.dance.waits import waiting_at
 from dancetutor_cli.feet.limbs import Limb, Part
 
-ROUNDS, ROUNDS_WITH_PALMS = 2, 3  # rounds of rough baking until the path of the body is final
+SETTLE_ROUNDS, ROUNDS_WITH_PALMS = 2, 3  # rounds of rough baking until the path of the body is final
 TIGHTENED = 3  # rounds of tightening the limits of balance in the last of these rounds
 COARSE = 4  # a round bakes only one of this many samples of the path
 OFFSET_SMOOTH = 0.010  # seconds over which the path of the centre of mass from the pelvis is smoothed
@@ -60,7 +60,7 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> SettledTra
     coarse, ones = times[::COARSE], np.ones(len(times))
     deeper, heels, knees = np.zeros(len(plan.presses)), np.zeros((len(times), 2)), np.zeros((len(times), 2))
     may_rise, residuals = heels_may_rise(plan, times, settings.step.press_time), []
-    rounds = ROUNDS_WITH_PALMS if plan.presses else ROUNDS
+    rounds = ROUNDS_WITH_PALMS if plan.presses else SETTLE_ROUNDS
     for number in range(rounds):
         targets = targets_at(plan, body, (coarse, both_feet(plan.feet, coarse, settings)), context)
         poses = solve(context.skeleton, targets, settings.body.reach)

@@ -37,7 +37,7 @@ def test_what_converges_is_not_softened() -> None:
 
 
 def test_no_convergence_at_all_is_an_error_that_names_the_path(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(quadratic, "ROUNDS", 1)
+    monkeypatch.setattr(quadratic, "SOLVER_ROUNDS", 1)
     monkeypatch.setattr(quadratic, "MORE_ROUNDS", 2)
     with pytest.raises(ConvergenceError, match=r"^a path was not found in 2 rounds"):
         solve_surely(*_as_list(problem()), "a path")
@@ -71,7 +71,7 @@ def test_a_bake_says_what_gave_way_and_is_still_a_motion(monkeypatch: pytest.Mon
 
 
 def test_a_bake_that_has_no_path_ends_with_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(quadratic, "ROUNDS", 1)
+    monkeypatch.setattr(quadratic, "SOLVER_ROUNDS", 1)
     monkeypatch.setattr(quadratic, "MORE_ROUNDS", 1)
     with pytest.raises(DancetutorError, match=r"from -?\d+\.\d s to \d+\.\d s was not found") as error:
         bake(chart().timing, play(MEDLEY), pad(), section=(3.0, 6.0))

@@ -8,7 +8,7 @@ from bake_plays import MEDLEY, chart, pad, play, stream
 
 from dancetutor_cli.dance.bake import planned
 from dancetutor_cli.dance.foot_path import both_feet
-from dancetutor_cli.dance.settle import ROUNDS, ROUNDS_WITH_PALMS, SettledTrajectory, settle
+from dancetutor_cli.dance.settle import ROUNDS_WITH_PALMS, SETTLE_ROUNDS, SettledTrajectory, settle
 
 
 def settled(events: list, until: float) -> SettledTrajectory:  # type: ignore[type-arg]
@@ -17,7 +17,7 @@ def settled(events: list, until: float) -> SettledTrajectory:  # type: ignore[ty
     return settle(plan, grid, both_feet(plan.feet, grid, context.settings), context)
 
 
-@pytest.mark.parametrize(("events", "rounds"), [(stream(2.0, 16, 0.25), ROUNDS), (MEDLEY, ROUNDS_WITH_PALMS)])
+@pytest.mark.parametrize(("events", "rounds"), [(stream(2.0, 16, 0.25), SETTLE_ROUNDS), (MEDLEY, ROUNDS_WITH_PALMS)])
 def test_residuals_shrink_round_by_round(events: list, rounds: int) -> None:  # type: ignore[type-arg]
     found = settled(events, events[-1][0] + 1.0)
     assert found.rounds == rounds == len(found.residuals)

@@ -16,7 +16,7 @@ from dancetutor_cli.dance.performance import perform, solve
 from dancetutor_cli.dance.physics.blend import Blend
 from dancetutor_cli.dance.physics.pipeline import RagdollOptions, through_ragdoll
 from dancetutor_cli.dance.physics.style import load_style
-from dancetutor_cli.dance.pieces import MARGIN, RagdollStyle, Span, piece_of
+from dancetutor_cli.dance.pieces import MORE_PLANNED, RagdollStyle, Span, piece_of
 from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.quality.figures import MotionReport
 from dancetutor_cli.dance.quality.report import report
@@ -45,7 +45,7 @@ class Passage:
     def motion(self, style: str | None = None) -> Motion:
         """Baked as a piece of its own: the ragdoll need not follow her through the whole song."""
         ragdoll = None if style is None else RagdollStyle(Blend.of(load_style(style)), RagdollOptions())
-        return bake_piece(piece_of(self.plan, self.context, 60.0, (self.span, self.span, MARGIN), ragdoll)).motion
+        return bake_piece(piece_of(self.plan, self.context, 60.0, (self.span, self.span, MORE_PLANNED), ragdoll)).motion
 
 
 def by_hand(events: list[plays.Event]) -> Passage:

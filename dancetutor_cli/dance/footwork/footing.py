@@ -93,7 +93,7 @@ def pressed_by(play: Play, index: int) -> dict[int, list[int]]:
 #
 # These classes are frozen: a rule makes a new footing from the given one, and the planner uses it or not.
 
-SHORTEST = 0.02  # seconds; the shortest swing
+SHORTEST_SWING = 0.02  # seconds; the shortest swing
 FREE_WINDOW = 0.001
 
 
@@ -169,10 +169,10 @@ class FootState:
         """Whether the foot is in the middle of a hold."""
         return any(end > time + FREE_WINDOW for _, end in self.holds)
 
-    def latest(self, time: float, let_go: float) -> float:
+    def latest(self, time: float, lead: float) -> float:
         """When the foot leaves for a note at the latest; a hold that ends too late is released a little early."""
-        late = max(time - SHORTEST, self.rested(time))
-        early = max(time - let_go, self.rested(time))
+        late = max(time - SHORTEST_SWING, self.rested(time))
+        early = max(time - lead, self.rested(time))
         return min(early, late) if self.free > early else late
 
     def earliest(self, time: float) -> float:
@@ -359,7 +359,7 @@ def press(
     hands, (time, end) = footing.settings.hands, span
     end = max(time + hands.press, end if end < np.inf else 0.0)
     before = [p.end for p in earlier if p.side == side]
-    lead = min(hands.reach_down, max(time - before[-1], SHORTEST) if before else np.inf)
+    lead = min(hands.reach_down, max(time - before[-1], SHORTEST_SWING) if before else np.inf)
     return Press(time, end, side, panel, _turn_to_panel(footing, side, panel), lead)
 
 

@@ -16,7 +16,7 @@ from dancetutor_cli.dance.footwork.flights import Flight, flown
 from dancetutor_cli.dance.footwork.foothold import Pitches, around, landing_ball, pose, resolve_overlap
 from dancetutor_cli.dance.footwork.footing import (
     FREE_WINDOW,
-    SHORTEST,
+    SHORTEST_SWING,
     Evading,
     Footing,
     FootState,
@@ -58,7 +58,7 @@ def _hopped(footing: Footing, time: float) -> Footing:
     half, stand = footing.settings.mines.hop / 2, footing.settings.step.stand
     pushed = min(time - footing.settings.mines.push, max(f.landed for f in footing.feet) + stand)
     take_off = max(time - half, pushed, *(f.earliest(time) for f in footing.feet))
-    if take_off > time - SHORTEST:
+    if take_off > time - SHORTEST_SWING:
         return footing
     goals, before = [_home(footing, foot) for foot in footing.feet], footing.feet
     footing = flown(footing, Flight(take_off, time + half, mined=True), goals, [_pitches(footing.settings.mines)] * 2)
@@ -91,7 +91,7 @@ def _lifted(footing: Footing, foot: FootState, time: float, column: int) -> Foot
     """
     mines = footing.settings.mines
     half, first = mines.before + mines.rise, time
-    lift = min(max(time - half, foot.free), max(time - SHORTEST, foot.landed + FREE_WINDOW))
+    lift = min(max(time - half, foot.free), max(time - SHORTEST_SWING, foot.landed + FREE_WINDOW))
     if foot.evading is not None and foot.landed > time - half and isinstance(foot.moves[-1], Hover):
         # the foot stays in the air from the last mine
         first, lift = foot.evading.first, foot.moves[-1].lift
@@ -228,7 +228,7 @@ def stayed_up(before: Footing, after: Footing, until: list[float], take_off: flo
     until : latest second at which each foot must be up
     """
     for stood, foot, lift in zip(before.feet, after.feet, until, strict=True):
-        if lift < take_off - SHORTEST:
+        if lift < take_off - SHORTEST_SWING:
             jump = foot.moves[-1]
             bulge = around(before, stood, (lift, jump.land), foot.ball, foot.yaw, after.other(foot))
             height = before.settings.mines.height

@@ -11,7 +11,7 @@ from dancetutor_cli.dance.clearance import SHARES, Way, detour, evenness
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.foot_path import shoe_path
 from dancetutor_cli.dance.footwork.footfalls import Stand, standing
-from dancetutor_cli.dance.footwork.footing import SHORTEST, Footing, Proposal, Row, hold, pair, press, pressed_by
+from dancetutor_cli.dance.footwork.footing import SHORTEST_SWING, Footing, Proposal, Row, hold, pair, press, pressed_by
 from dancetutor_cli.dance.footwork.homing import HomeSteps, faces_as_at_home, leg_shakes
 from dancetutor_cli.dance.footwork.mines import avoid_mines
 from dancetutor_cli.dance.footwork.steps import jump, step
@@ -111,7 +111,7 @@ class Planner:
         before = self.footing.normal
         aim = float(np.radians(self.facing.aim(row, before + turned, self.footing.lead)))
         self.footing = replace(self.footing, normal=before + turned, aim=aim)
-        duration = longest if self.previous is None else min(longest, max(time - self.previous, SHORTEST))
+        duration = longest if self.previous is None else min(longest, max(time - self.previous, SHORTEST_SWING))
         row = replace(row, duration=duration, turned=self.footing.normal - before)
         found = jump(row, self.footing) if len(row.feet) == 2 else step(row, row.feet[0], self.footing)
         yaw = found.footing.turned_to()

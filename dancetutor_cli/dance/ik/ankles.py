@@ -21,7 +21,7 @@ from dancetutor_cli.feet.play import runs
 
 # Ankles within their limits: feet in the air follow their shanks, and the knees over standing feet turn.
 
-MARGIN = 0.5  # degrees inside the limit
+LIMIT_MARGIN = 0.5  # degrees inside the limit
 # angles of a knee, in the order in which they are tried
 GIVES = np.radians([0.0, 4.0, -4.0, 8.0, -8.0, 12.0, -12.0, 16.0, -16.0, 20.0, -20.0, 24.0, -24.0])
 NEAR, ROOM = 2.0, 1.0  # degrees from its limit at which an ankle is checked; degrees kept to the limit afterwards
@@ -38,11 +38,11 @@ def ease_ankles(skeleton: Skeleton, poses: Poses, feet: tuple[FootPath, FootPath
         name = f"{'lr'[side]}_talocrural"
         joint, rotations = skeleton.index(name), poses.rotations
         free = freedom(foot)
-        bent = np.flatnonzero((beyond(skeleton, name, rotations[:, joint]) > -MARGIN) & (free > 0.0))
+        bent = np.flatnonzero((beyond(skeleton, name, rotations[:, joint]) > -LIMIT_MARGIN) & (free > 0.0))
         if not len(bent):
             continue
         some = Poses(rotations[bent], poses.root[bent])
-        eased = within(skeleton, name, rotations[bent, joint], MARGIN)
+        eased = within(skeleton, name, rotations[bent, joint], LIMIT_MARGIN)
         floor = np.minimum(_lowest(skeleton, some, side), 0.0) - UNDER
 
         def turned(share: Array, joint: int = joint, some: Poses = some, eased: Array = eased) -> Poses:
@@ -123,7 +123,7 @@ def _least_give(skeleton: Skeleton, poses: Poses, inside: NDArray[np.bool_], nam
 # Soles that roll: where its ankle would bend too far, a foot lands on an edge, or with its heel up, and becomes flat as
 # the body comes over it.
 
-ROUNDS = 4  # rounds of turning a sole and checking the result
+SOLE_ROUNDS = 4  # rounds of turning a sole and checking the result
 MOST = np.radians((18.0, 20.0))  # radians that a sole rolls at most, and that its heel rises at most
 PRESSED, FADE = 0.006, 0.04  # seconds around a note in which a sole does not roll off its panel, and in which it begins
 
@@ -178,7 +178,7 @@ def rolled_soles(
     for side, foot in enumerate(feet):
         name = f"{'lr'[side]}_talocrural"
         joint, edges, low = skeleton.index(name), edges_of(skeleton, side), 1.0 - freedom(foot)
-        past = beyond(skeleton, name, poses.rotations[:, joint]) > -MARGIN
+        past = beyond(skeleton, name, poses.rotations[:, joint]) > -LIMIT_MARGIN
         at = np.flatnonzero(past & (low > 0.0) & (foot.pitch > -1e-6))
         if not len(at):
             continue
@@ -244,9 +244,9 @@ def _angles(skeleton: Skeleton, sole: RollingSole, edges: Edges) -> Array:
     """Return how far (m, 2) a sole rolls and its heel rises, as in `_turns`, so that its ankle is within its limits."""
     axes = [quat.rotate(sole.straight, np.array(axis)) for axis in ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0))]
     angles, least, most = np.zeros((len(sole.turn), 2)), [-MOST[0], 0.0], MOST
-    for _ in range(ROUNDS):
+    for _ in range(SOLE_ROUNDS):
         now = quat.multiply(_turns(angles, sole.straight, edges)[1], sole.turn)
-        eased = within(skeleton, sole.name, quat.multiply(quat.conjugate(sole.shank), now), MARGIN)
+        eased = within(skeleton, sole.name, quat.multiply(quat.conjugate(sole.shank), now), LIMIT_MARGIN)
         more = quat.multiply(quat.multiply(sole.shank, eased), quat.conjugate(now))
         more = 2.0 * np.where(more[:, :1] < 0.0, -more, more)[:, 1:]
         angles += np.stack([np.sum(more * axis, axis=1) for axis in axes], axis=1)

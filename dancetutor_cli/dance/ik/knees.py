@@ -19,7 +19,7 @@ OUTSIDE = 0.002  # metres outside its hip at which a leg does not lean
 LOOKED = 0.03  # metres; legs farther apart are not changed
 TRIED = np.radians(1.5)  # radians that a knee is turned to measure the effect
 FLAT = 1e-4  # square metres per radian; a knee whose turn has a smaller effect is not turned
-ROUNDS, STEPS = 3, 10  # rounds of turning knees apart, and steps of measuring how deep legs are in each other
+KNEE_ROUNDS, STEPS = 3, 10  # rounds of turning knees apart, and steps of measuring how deep legs are in each other
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +68,7 @@ def part_knees(skeleton: Skeleton, hung: Hung, poles: Array, knees: KneeSettings
     both = hung.legs(skeleton, poles)
     near, most = np.arange(len(poles)), np.radians(knees.give)
     given = np.zeros((len(poles), 2))
-    for _ in range(ROUNDS):
+    for _ in range(KNEE_ROUNDS):
         legs = both.some(near)
         deep = legs.depth(given[near])
         close = deep > -LOOKED

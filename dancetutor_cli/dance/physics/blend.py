@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing
 
 TOLERANCE = 1e-6  # by which weights may sum to more than 1, for thirds that are written with six digits
-SHORTEST = 0.5  # seconds; least duration of a change, if a warp skips its measure
+SHORTEST_CHANGE = 0.5  # seconds; least duration of a change, if a warp skips its measure
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,8 +83,8 @@ class StyleChoice:
             assert timing is not None
             ticks = np.array([measure - 1, measure], dtype=np.int64) * TICKS_PER_MEASURE
             start, end = timing.seconds(ticks).tolist()
-            start = max(min(start, end - SHORTEST), changes[-1][1] if changes else -np.inf)
-            changes.append((start, max(end, start + SHORTEST)))
+            start = max(min(start, end - SHORTEST_CHANGE), changes[-1][1] if changes else -np.inf)
+            changes.append((start, max(end, start + SHORTEST_CHANGE)))
         return Blend(self.styles, self.states, tuple(changes))
 
 

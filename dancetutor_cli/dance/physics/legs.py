@@ -157,7 +157,7 @@ def _slowly(times: Array, values: Array) -> Array:
 
 ANKLE_ROUNDS = 3
 LEANS = 1.0  # degrees to a side; from here on, a foot stands on its edge and its sole is not held
-MARGIN = 0.6  # degrees that are kept to a limit
+ANKLE_MARGIN = 0.6  # degrees that are kept to a limit
 SWIVELS = 0.25  # seconds in which a leg turns about the line from hip to ankle, or a foot leans, and returns
 
 
@@ -212,7 +212,7 @@ def _swivelled(skeleton: Skeleton, poses: Poses, feet: AnkleTracks, times: Array
 def _twisted(turns: Array) -> Array:
     """Return the radians (f,) by which ankles, turned locally by (f, 4), are twisted past their limit; 0 within."""
     twist = quat.to_vector(quat.swing_twist(turns, quat.UP)[1])[:, 1]
-    most = np.radians(LIMITS["l_talocrural"].twist[1] - MARGIN)
+    most = np.radians(LIMITS["l_talocrural"].twist[1] - ANKLE_MARGIN)
     return np.asarray(np.sign(twist) * np.maximum(np.abs(twist) - most, 0.0))
 
 
@@ -230,7 +230,7 @@ def _turned(
         if not len(past):
             continue
         shank = world[past, skeleton.parents[ankle]]
-        turn = quat.multiply(shank, within(skeleton, name, rotations[past, ankle], MARGIN))
+        turn = quat.multiply(shank, within(skeleton, name, rotations[past, ankle], ANKLE_MARGIN))
         stands = (plants.heel | plants.ball)[past, side]
         turn = np.where(stands[:, None], _pitched(turns[past, side], turn, plants.ball[past, side]), turn)
         anchor = np.where(plants.ball[past, side][:, None], sole.ball, sole.heel)
@@ -265,7 +265,9 @@ def _leaning(
         ankle = skeleton.index(name)
         if not (beyond(skeleton, name, rotations[:, ankle]) > 0.0).any():
             continue
-        wanted = quat.multiply(world[:, skeleton.parents[ankle]], within(skeleton, name, rotations[:, ankle], MARGIN))
+        wanted = quat.multiply(
+            world[:, skeleton.parents[ankle]], within(skeleton, name, rotations[:, ankle], ANKLE_MARGIN)
+        )
         back = quat.to_vector(quat.multiply(wanted, quat.conjugate(turns[:, side])))
         back[:, 1] = -_twisted(rotations[:, ankle])
         turn = quat.multiply(quat.from_vector(both_envelopes(times, back, SWIVELS)), turns[:, side])

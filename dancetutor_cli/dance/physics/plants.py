@@ -22,7 +22,7 @@ from dancetutor_cli.feet.play import runs
 # unless it pivots on its ball. Between two holds, the changes of the first fade smoothly into the changes of the
 # second.
 
-SHORTEST = 0.05  # seconds; a shorter contact of a sole is not a hold
+SHORTEST_CONTACT = 0.05  # seconds; a shorter contact of a sole is not a hold
 GAP = 0.07  # seconds; two holds of one point with a shorter gap become one
 PIVOT = np.radians(25.0)  # a foot that turns more than this while it lies flat pivots on purpose, on its ball
 SURELY = 1.15  # factor of `PIVOT`; uncertain turns stay
@@ -57,7 +57,7 @@ def tidied(plants: Plants, rate: float) -> Plants:
                 if first > 0 and end < len(new) and end - first < GAP * rate:
                     new[first:end, side] = True
             for first, end in runs(new[:, side]):
-                if end - first < SHORTEST * rate:
+                if end - first < SHORTEST_CONTACT * rate:
                     new[first:end, side] = False
         out.append(new)
     return Plants(*out)

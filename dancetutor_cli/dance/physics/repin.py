@@ -81,7 +81,7 @@ def _pull(skeleton: Skeleton, pelvis: Array, root: Array, legs: list[TwoBones], 
 # Exact joint limits: the limits of the engine are cones and give way a little, as springs do. Joints past their limits
 # are brought back.
 
-MARGIN = 0.5  # degrees inside the limits
+LIMIT_MARGIN = 0.5  # degrees inside the limits
 SLOWLY = 0.25  # seconds over which a joint is brought back, before and after it is past a limit
 MOST = np.radians(20.0)  # largest excess that is brought back early; a larger excess is stopped at once
 ELBOW = np.radians(-5.0)  # bend of a straight elbow
@@ -113,10 +113,10 @@ def restrained(skeleton: Skeleton, rotations: Array, times: Array, calm: Array |
 
 def _clipped(skeleton: Skeleton, name: str, turns: Array, hinges: Mapping[int, Bone]) -> Array:
     """Return turns (f, 4) of one joint, brought back to its limits where they are past them."""
-    past = np.flatnonzero(beyond(skeleton, name, turns) > -MARGIN)
+    past = np.flatnonzero(beyond(skeleton, name, turns) > -LIMIT_MARGIN)
     out = turns.copy()
     if len(past):
-        out[past] = within(skeleton, name, turns[past], MARGIN)
+        out[past] = within(skeleton, name, turns[past], LIMIT_MARGIN)
     bone = hinges.get(skeleton.index(name))
     return out if bone is None else _forward(bone, out)
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from dancetutor_cli.dance.physics.plants import NEARLY, STEEPEST, Plants, Sole, cleared
 from dancetutor_cli.dance.physics.repin import AnkleTracks
-from dancetutor_cli.dance.quality.contact import SHORTEST, stand_frames
+from dancetutor_cli.dance.quality.contact import SHORTEST_STAND, stand_frames
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.limbs import TwoBones
 from dancetutor_cli.dance.rig.skeleton import Skeleton
@@ -22,9 +22,9 @@ from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array, Flags
 from dancetutor_cli.feet.play import runs
 
-ROUNDS = 4
+STAND_ROUNDS = 4
 # factor of the visible limits within which feet are held: later, legs that give move the feet across these limits
-MARGIN = 1.05
+LIMITS_FACTOR = 1.05
 ON_FLOOR = 0.015  # metres over the floor up to which the end of a standing foot is put on the floor
 FLAT = np.radians(8.0)  # pitch up to which a standing foot lies flat
 TURNS = np.radians(45.0)  # a standing foot that turns more pivots on purpose
@@ -75,7 +75,7 @@ def keep_feet_still(
     held = np.zeros(heel.shape)
     for side in (0, 1):
         foot = _Foot(skeleton, side, times, hips[:, side], feet.turns[:, side])
-        for _ in range(ROUNDS):
+        for _ in range(STAND_ROUNDS):
             stands = foot.stands(places[:, side], turns[:, side])
             if not stands:
                 break
@@ -178,7 +178,7 @@ def _unshuffled(times: Array, path: Array) -> list[tuple[int, int]]:
     """Return the stands of a joint; if the joint goes from one place to another within a stand, there are two."""
     out: list[tuple[int, int]] = []
     rate = (len(times) - 1) / float(times[-1] - times[0])
-    rest = [(int(first), int(end)) for first, end in stand_frames(times, path, MARGIN)]
+    rest = [(int(first), int(end)) for first, end in stand_frames(times, path, LIMITS_FACTOR)]
     while rest:
         first, end = rest.pop()
         flat = path[first:end][:, [0, 2]]
@@ -190,7 +190,7 @@ def _unshuffled(times: Array, path: Array) -> list[tuple[int, int]]:
         fast = first + int(np.argmax(np.linalg.norm(np.diff(flat, axis=0), axis=1)))
         fast = min(max(fast, first + half + 1), end - half - 1)
         parts = ((first, fast - half), (fast + half, end))
-        if all(b - a >= SHORTEST * rate for a, b in parts):
+        if all(b - a >= SHORTEST_STAND * rate for a, b in parts):
             rest += parts
         else:
             out.append((first, end))

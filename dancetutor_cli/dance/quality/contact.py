@@ -262,7 +262,7 @@ def _farthest(motion: Motion, side: int, x: float, times: np.ndarray[tuple[int],
 # motion diffusion*, 2023). The program's own plants do not count, so this measure fits any motion.
 
 RATE = 60.0  # frames per second of the measurement
-SHORTEST = 0.10  # seconds; least duration of a stand
+SHORTEST_STAND = 0.10  # seconds; least duration of a stand
 MEDIAN, WORST = 5.0, 25.0  # goals, millimetres
 JOINTS = ("l_talocrural", "l_metatarsal", "r_talocrural", "r_metatarsal")
 
@@ -307,7 +307,7 @@ def stand_frames(times: Array, path: Array, margin: float = 1.0) -> NDArray[np.i
     low = path[:, 1] < np.percentile(path[:, 1], 5) + margin * SKATE_HEIGHT
     slow = np.linalg.norm(np.gradient(path, step, axis=0), axis=1) < margin * SKATE_SPEED
     spans = runs(low & slow)
-    return np.asarray(spans[(spans[:, 1] - spans[:, 0]) * step >= SHORTEST / margin])
+    return np.asarray(spans[(spans[:, 1] - spans[:, 0]) * step >= SHORTEST_STAND / margin])
 
 
 def _extent(places: Array) -> float:

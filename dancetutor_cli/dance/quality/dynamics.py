@@ -118,7 +118,7 @@ def dumbbells(skeleton: Skeleton, body: Body) -> tuple[Array, Array]:
 
 # Jumps: the centre of mass must fall freely, and the ground must push no harder than legs can.
 
-SHORTEST = 5  # frames; fewer do not determine a parabola
+SHORTEST_FLIGHT = 5  # frames; fewer do not determine a parabola
 FIT = 0.12  # seconds; the arc of a shorter flight is so flat (under 2 cm) that a fit of g has no meaning
 
 
@@ -128,7 +128,7 @@ def flight_figures(body: Body) -> tuple[Figure, ...]:
     gravity, residual, apex = [], [], []
     height = body.mass[:, 1]
     for first, end in runs(flying):
-        if end - first < SHORTEST or first == 0 or end == len(height):
+        if end - first < SHORTEST_FLIGHT or first == 0 or end == len(height):
             continue
         t = body.times[first:end] - body.times[first]
         fit = np.polyfit(t, height[first:end], 2)

@@ -15,7 +15,7 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.units import Array
 
-SHORTEST = 20.0  # seconds of steps; a shorter dance has no figures
+SHORTEST_DANCE = 20.0  # seconds of steps; a shorter dance has no figures
 SLOWEST, FASTEST = 1.0, 8.0  # steps a second; slower or faster dances have no goal
 HELD = 0.5  # part of the time with a hand on the bar, from which on the figures of trunk and arms have no goal
 BOUNCE = (0.7, 5.0)  # Hz, of the height of the pelvis
@@ -33,7 +33,7 @@ def liveliness_figures(body: Body, motion: Motion) -> tuple[Figure, ...]:
     seconds = float(stepping.sum()) / body.rate
     pace = len({c.start for c in contacts}) / max(seconds, 1.0)
     paced, held = SLOWEST <= pace <= FASTEST, _held(body.times[stepping], motion) >= HELD
-    values = _values(body, skeleton, stepping) if seconds >= SHORTEST else {}
+    values = _values(body, skeleton, stepping) if seconds >= SHORTEST_DANCE else {}
     rows = (
         ("lean of the trunk, deviation", "lean", "degrees", 2.5, True),
         ("lean of the trunk, 95 of 100", "lean most", "degrees", 25.0, False),

@@ -33,7 +33,7 @@ from dancetutor_cli.run.errors import DancetutorError
 # Every figure measures the motion as a viewer of its file shows it: rotations are slerped and the root moves straight
 # between keys. Definitions and goals are in docs/motion.md; each family of figures has its module.
 
-SHORTEST = 0.05  # seconds; a shorter motion has no accelerations to measure
+SHORTEST_MOTION = 0.05  # seconds; a shorter motion has no accelerations to measure
 Curve = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
@@ -50,8 +50,10 @@ def report(motion: Motion, mines: NDArray[np.float64] | None = None) -> MotionRe
     DancetutorError if the motion is too short to be measured.
     """
     length = float(motion.times[-1] - motion.times[0])
-    if length < SHORTEST - 1e-9:
-        raise DancetutorError(f"{length:.3f} s of motion cannot be measured; a report needs at least {SHORTEST} s")
+    if length < SHORTEST_MOTION - 1e-9:
+        raise DancetutorError(
+            f"{length:.3f} s of motion cannot be measured; a report needs at least {SHORTEST_MOTION} s"
+        )
     contacts, errors = contact_figures(motion)
     body = body_of(motion)
     ground, notes = ground_figures(motion, body, mines)

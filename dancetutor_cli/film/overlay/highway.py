@@ -236,11 +236,11 @@ class Highway:
             shown = shown[:3000]  # more notes are unreadable; the limit bounds the work of hostile charts
         held = (notes.second <= second + 1e-6) & notes.judged
         holds = np.isin(notes.kind[shown], (Kind.HOLD, Kind.ROLL))
-        let_go = self._y(notes.gone_second, notes.gone_beat, now)
+        released = self._y(notes.gone_second, notes.gone_beat, now)
         for i in shown[holds]:
             head = self.geometry.receptor if held[i] else y[i]
             if np.isfinite(notes.gone_second[i]):  # bright while it is played, and dim after that
-                at = min(max(let_go[i], min(head, tail[i])), max(head, tail[i]))
+                at = min(max(released[i], min(head, tail[i])), max(head, tail[i]))
                 self._draw_hold(frame, int(i), Run(at, tail[i], y[i]), LET_GO)
                 self._draw_body(frame, int(i), Run(min(head, at), max(head, at), y[i]), 1.0 if held[i] else 0.78)
             else:

@@ -180,7 +180,7 @@ def _dense(subject: ChartSubject, row: int) -> tuple[int, str]:
     return row, ""
 
 
-def _let_go(subject: ChartSubject, before: int, row: int) -> bool:
+def _other_hold_ends(subject: ChartSubject, before: int, row: int) -> bool:
     """Whether the other foot's hold ends between two single steps, and it can take the second step uncrossed."""
     from dancetutor_cli.lint.other_foot import standing
 
@@ -232,7 +232,7 @@ def _free_foot_takes_it(subject: ChartSubject, row: int, max_speed: float) -> bo
     if play is None or pad is None or subject.facts is None or at < 2:
         return False
     before = int(rows[at - 1])
-    if _let_go(subject, before, row) or _can_tap_neighbour(subject, before, row):
+    if _other_hold_ends(subject, before, row) or _can_tap_neighbour(subject, before, row):
         return True
     if any((play.limb[one] >= 0).sum() != 1 or subject.facts.down[one] != 1 for one in (before, row)):
         return False
