@@ -29,6 +29,7 @@ from feet_lattice import (
     move_costs,
     sums,
     viterbi,
+    with_values,
 )  # fmt: skip
 from numpy.typing import NDArray
 from scipy.optimize import minimize
@@ -94,7 +95,8 @@ def fitted(preset: Preset, found: Floats) -> Preset:
     knots = [
         tuple((int(ms), round(float(cost) * SCALE)) for ms, cost in zip(KNOTS, row, strict=True)) for row in curves
     ]
-    return preset.with_values(
+    return with_values(
+        preset,
         weights={name: int(value) for name, value, free in zip(WEIGHTS, whole, _FREE, strict=True) if free},
         curves=dict(zip(CURVES, knots, strict=True)),
     )

@@ -6,8 +6,9 @@ and costs of any other weights are a product. Fixed weights (`FIXED`) stay what 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from feet_data import Labelled
@@ -81,10 +82,16 @@ class Book:
     action: NDArray[np.int64]
 
 
+def with_values(preset: Preset, **changes: Mapping[str, Any]) -> Preset:
+    """The preset with some of its `weights`, `switches` or `curves` changed."""
+    both = {kind: {**dict(getattr(preset, kind)), **new} for kind, new in changes.items()}
+    return replace(preset, **{kind: tuple(values.items()) for kind, values in both.items()})
+
+
 def unit_preset(preset: Preset) -> Preset:
     """A preset whose costs are counts."""
     ones = {name: DISTANCE_UNIT if name in BY_SIZE else 1 for name in WEIGHTS}
-    return preset.with_values(weights=ones, curves=dict.fromkeys(CURVES, ((0, 0),)))
+    return with_values(preset, weights=ones, curves=dict.fromkeys(CURVES, ((0, 0),)))
 
 
 @njit(cache=True)

@@ -22,7 +22,7 @@ import numpy as np
 from feet_confidence import calibrated, chart_of_calibration, reliability
 from feet_data import Labelled
 from feet_fit import KNOTS, MOST, Floats, Limits, Share, fitted, likelihood, limits, part, perceptron, shares, vector
-from feet_lattice import CURVES, WEIGHTS
+from feet_lattice import CURVES, WEIGHTS, with_values
 from feet_patterns import load_patterns
 from numpy.typing import NDArray
 
@@ -79,7 +79,7 @@ def tasks() -> list[Task]:
 def start_of(preset: Preset) -> Floats:
     """Where every fit begins, whatever the preset says today: all things cost much the same."""
     weights = dict.fromkeys(WEIGHTS, 50)
-    return vector(preset.with_values(weights=weights, curves=dict.fromkeys(CURVES, ((0, 50),))))
+    return vector(with_values(preset, weights=weights, curves=dict.fromkeys(CURVES, ((0, 50),))))
 
 
 def mixed(whole: Sequence[Share], task: Task, keep: set[str]) -> list[Share]:

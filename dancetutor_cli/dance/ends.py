@@ -17,7 +17,7 @@ from dancetutor_cli.dance.footwork.homing import homeward
 from dancetutor_cli.dance.keys import Keys
 from dancetutor_cli.dance.motion import Cut, Motion, sample
 from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, repinned
-from dancetutor_cli.dance.pieces import OVERLAP, MORE_PLANNED, Piece, RagdollStyle, piece_of, track_from
+from dancetutor_cli.dance.pieces import MORE_PLANNED, OVERLAP, Piece, RagdollStyle, piece_of, track_from
 from dancetutor_cli.dance.plan import FootTrack, Plan
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.settings import Span

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import cache
 from pathlib import Path
@@ -80,21 +80,6 @@ class Preset:
     def curve(self, name: str) -> Curve:
         """Return the knots of a curve."""
         return dict(self.curves)[name]
-
-    def with_values(
-        self,
-        *,
-        weights: Mapping[str, int] | None = None,
-        switches: Mapping[str, bool] | None = None,
-        curves: Mapping[str, Curve] | None = None,
-    ) -> Preset:
-        """Return the preset with some values changed. Raises KeyError for a name that the model does not have."""
-        changed: list[Any] = []
-        for old, new in ((self.switches, switches or {}), (self.weights, weights or {}), (self.curves, curves or {})):
-            if unknown := set(new) - {name for name, _ in old}:
-                raise KeyError(", ".join(sorted(unknown)))
-            changed.append(tuple((name, new.get(name, value)) for name, value in old))
-        return replace(self, switches=changed[0], weights=changed[1], curves=changed[2])
 
 
 def preset_names() -> list[str]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +21,12 @@ from dancetutor_cli.feet.solver.solve import solve_rows
 KINDS = {".": 0, "1": StepKind.TAP, "L": StepKind.LIFT, "2": StepKind.HOLD, "4": StepKind.ROLL, "r": StepKind.ROLL_TAP}
 OTHER_LIMB = {-2: -2, -1: -1, 0: 1, 1: 0, 2: 3, 3: 2}
 LIMBS = {Limb.LEFT_FOOT: "L", Limb.RIGHT_FOOT: "R", Limb.LEFT_HAND: "l", Limb.RIGHT_HAND: "r"}
+
+
+def with_values(preset: Preset, **changes: Mapping[str, Any]) -> Preset:
+    """The preset with some of its `weights`, `switches` or `curves` changed."""
+    both = {kind: {**dict(getattr(preset, kind)), **new} for kind, new in changes.items()}
+    return replace(preset, **{kind: tuple(values.items()) for kind, values in both.items()})
 
 
 def pad_of(steps_type: str) -> Pad:

@@ -10,7 +10,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from play_rows import pad_of, rows_of
+from play_rows import pad_of, rows_of, with_values
 
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solver.engine import cost_at
@@ -62,7 +62,7 @@ def test_the_gradient_is_that_of_the_likelihood(tools: SimpleNamespace, jumper) 
 
 @pytest.mark.parametrize("method", ["likelihood", "perceptron"])
 def test_a_fit_takes_over_what_labels_say(tools: SimpleNamespace, jumper, method: str) -> None:  # type: ignore[no-untyped-def]
-    never = ITG.with_values(curves={"footswitch": ((100, 900),)})
+    never = with_values(ITG, curves={"footswitch": ((100, 900),)})
     data, start = tools.fit.shares(jumper, never), tools.fit.vector(never)
     before = np.concatenate(list(tools.fit.right(start, data).values())).mean()
     found = (
@@ -76,7 +76,7 @@ def test_a_fit_takes_over_what_labels_say(tools: SimpleNamespace, jumper, method
 
 def test_a_falling_curve_never_rises_with_time(tools: SimpleNamespace, jumper) -> None:  # type: ignore[no-untyped-def]
     """She switches feet at 400 ms, so a switch gets cheap there and, held to fall, at every longer time."""
-    never = ITG.with_values(curves={"footswitch": ((100, 900),)})
+    never = with_values(ITG, curves={"footswitch": ((100, 900),)})
     data, start = tools.fit.shares(jumper, never), tools.fit.vector(never)
     free, held = (
         dict(tools.fit.fitted(never, tools.fit.likelihood(start, data, within)).curves)["footswitch"]
@@ -100,7 +100,7 @@ def test_the_fit_sees_what_the_solver_finds(tools: SimpleNamespace, jumper) -> N
 
 
 def test_an_authors_pins_make_a_preset(tools: SimpleNamespace, jumper, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
-    never = ITG.with_values(curves={"footswitch": ((100, 900),)})
+    never = with_values(ITG, curves={"footswitch": ((100, 900),)})
     many = jumper * 40
     path = tmp_path / "mine.yaml"
     path.write_text(tools.weights.own_preset(many, never, "itg"), encoding="utf-8")
@@ -111,7 +111,7 @@ def test_an_authors_pins_make_a_preset(tools: SimpleNamespace, jumper, tmp_path:
 
 def test_numbers_of_a_preset_are_written_between_its_comments(tools: SimpleNamespace) -> None:
     text = "weights:\n  spin: 1  # turns on\ncurves:\n  # too\n  jack: {0: 1, 9: 2}\nconfidence: {0: 500}\n"
-    preset = ITG.with_values(weights={"spin": 77}, curves={"jack": ((100, 5), (200, 0))})
+    preset = with_values(ITG, weights={"spin": 77}, curves={"jack": ((100, 5), (200, 0))})
     assert tools.weights.refreshed(text, preset, {0: 510, 10: 700}) == (
         "weights:\n  spin: 77  # turns on\ncurves:\n  # too\n  jack: {100: 5, 200: 0}\nconfidence: {0: 510, 10: 700}\n"
     )

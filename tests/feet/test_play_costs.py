@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from play_rows import pad_of, rows_of
+from play_rows import pad_of, rows_of, with_values
 
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.overrides import Overrides
@@ -16,7 +16,7 @@ ITG = load_preset("itg")
 # a number of its own for every weight; a curve goes from one number of its own to another between 100 and 300 ms
 _WEIGHTS = {name: 1009 + 7 * number for number, (name, _) in enumerate(ITG.weights)}
 _CURVES = {name: ((100, 4001 + 11 * number), (300, 2003 + 13 * number)) for number, (name, _) in enumerate(ITG.curves)}
-DISTINCT = ITG.with_values(weights=_WEIGHTS, curves=_CURVES)
+DISTINCT = with_values(ITG, weights=_WEIGHTS, curves=_CURVES)
 
 
 def price(picture: str, feet: str, term: str, row: int = -1, gap: int = 24, bpm: float = 150.0) -> int:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from play_rows import letters, pad_of, rows_of
+from play_rows import letters, pad_of, rows_of, with_values
 
 from dancetutor_cli.chart.reader import load
 from dancetutor_cli.feet.limbs import Limb, Part
@@ -129,7 +129,7 @@ def test_holdswitch() -> None:
     """The left foot holds down and has to step on up, out of a bracket's reach: the right foot takes over the hold."""
     found = solved(".2.. ..1. .3.. ...1", overrides=Overrides.of({(0, 1): (0, 0), (24, 2): (0, 0)}))
     assert move_rows(found, "holdswitch") == [1] and found.feet[1].tolist() == [2, 1]
-    without = load_preset("itg").with_values(switches={"holdswitches": False})
+    without = with_values(load_preset("itg"), switches={"holdswitches": False})
     assert move_rows(solved(".2.. ..1. .3.. ...1", preset=without), "holdswitch") == []
 
 

@@ -173,7 +173,7 @@ def test_gap_of_a_roll(bpm: float, window: float, ticks: int) -> None:
 def test_confidence_follows_the_margin() -> None:
     """Between 0 and 1 by the preset's curve; sure where there is no other way, unknown where nothing is stepped."""
     rows = rows_of("1... ..1. .M.. ...1 .1.1 ..1. 1111", 24, 150.0)
-    pad, preset = pad_of("dance-single"), load_preset("itg").with_values()
+    pad, preset = pad_of("dance-single"), load_preset("itg")
     found = solve_rows(rows, pad, preset)
     assert found.confidence is not None and found.margin is not None
     known = {margin: tenths / 1000 for margin, tenths in preset.confidence}
