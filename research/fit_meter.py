@@ -29,9 +29,9 @@ from scipy.optimize import nnls
 from dancetutor_cli.lint.meter.estimate import (
     TAGGED,
     MeteredChart,
+    measure_chart,
     on_scale,
     scales_of,
-    sized,
     tagged_scale,
 )
 from dancetutor_cli.lint.meter.model import Curve, Feature, Interval, MeterModel, Scale, model_of
@@ -220,7 +220,7 @@ def judged(charts: Sequence[Labelled], names: Sequence[str]) -> list[Judged]:
         files: dict[str, list[tuple[Labelled, MeteredChart]]] = defaultdict(list)
         for one, of in zip(charts, folds, strict=True):
             if of == fold:
-                files[one.file].append((one, sized(model, one.values, (one.meter, one.difficulty))))
+                files[one.file].append((one, measure_chart(model, one.values, (one.meter, one.difficulty))))
         for rows in files.values():
             found = scales_of([this for _, this in rows], rows[0][0].tag)
             for (one, this), (scale, known) in zip(rows, found, strict=True):

@@ -23,7 +23,7 @@ from meter_data import Labelled
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from dancetutor_cli.lint.meter.estimate import label_scales_of, level_of, sized
+from dancetutor_cli.lint.meter.estimate import label_scales_of, level_of, measure_chart
 from dancetutor_cli.lint.meter.model import Feature, model_for
 from dancetutor_cli.lint.meter.score import ODDITIES, TIMED, Level, Oddities, ScoreModel, Weight
 from dancetutor_cli.run.reading import config_path
@@ -355,7 +355,9 @@ def levels_by_label(charts: Sequence[Labelled], features: Sequence[Feature]) -> 
         model = model_for(steps_type)
         if model is not None and len(model.scales) > 1:
             places = [features.index(feature) for feature in model.features]
-            rows = [sized(model, [one.values[n] for n in places], (one.meter, one.difficulty)) for one in of_file]
+            rows = [
+                measure_chart(model, [one.values[n] for n in places], (one.meter, one.difficulty)) for one in of_file
+            ]
             for one, this, scale in zip(of_file, rows, label_scales_of(rows, of_file[0].tag), strict=True):
                 out[one] = level_of(this, scale)
     return out

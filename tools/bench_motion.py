@@ -7,7 +7,7 @@ import time
 import numpy as np
 
 from dancetutor_cli.chart.reader import load
-from dancetutor_cli.dance.bake import bake, bake_plan, planned
+from dancetutor_cli.dance.bake import bake, bake_plan, plan_dance
 from dancetutor_cli.dance.ik import full_body as ik
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.feet.pads import load_pad
@@ -59,7 +59,7 @@ def measure() -> list[Row]:
     took = {}
     for copies in (3, 12):
         chart, play, pad = _repeated(40.0, copies)
-        plan, context = planned(chart.timing, play, pad)
+        plan, context = plan_dance(chart.timing, play, pad)
         length = 40.0 * copies
         bake_plan(plan, context, FPS, (0.0, 5.0))
         took[copies] = _seconds(lambda p=plan, c=context, end=length: bake_plan(p, c, FPS, (0.0, end)), 2)

@@ -25,7 +25,7 @@ from dancetutor_cli.lint.check import check_chart
 from dancetutor_cli.lint.configuration import load_configuration
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.fix_edits import move_notes
-from dancetutor_cli.lint.rule import matching
+from dancetutor_cli.lint.rule import match_codes
 from dancetutor_cli.lint.subject import ChartSubject, solved_chart
 from dancetutor_cli.lint.suggest import move_edits
 
@@ -67,7 +67,7 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
-    codes = {code for one in given.rules.split(",") for code in matching(one)}
+    codes = {code for one in given.rules.split(",") for code in match_codes(one)}
     wanted = given.severity or ["warning"]
     found: list[tuple[ChartSubject, Finding]] = []
     for (code, severity), places in collected(given.folder).items():

@@ -22,7 +22,7 @@ from dancetutor_cli.feet.limbs import Part
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.lint.figures import arrows
 from dancetutor_cli.lint.findings import Finding
-from dancetutor_cli.lint.rule import all_rules, matching
+from dancetutor_cli.lint.rule import all_rules, match_codes
 from dancetutor_cli.lint.subject import ChartSubject, FileSubject
 
 BEFORE, AFTER = 9, 5  # rows, and lines of the file
@@ -135,7 +135,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
     given.to.mkdir(parents=True, exist_ok=True)
-    codes = {code for one in given.rules.split(",") for code in matching(one)}
+    codes = {code for one in given.rules.split(",") for code in match_codes(one)}
     for (code, severity), places in sorted(collected(given.folder, given.assignments).items()):
         if code not in codes or severity not in (given.severity or COUNTED):
             continue

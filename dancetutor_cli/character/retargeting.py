@@ -22,7 +22,7 @@ from dancetutor_cli.dance.physics.hair import add_hair
 from dancetutor_cli.dance.physics.pipeline import through_ragdoll
 from dancetutor_cli.dance.physics.ragdoll import bones_of, place_points, points_of
 from dancetutor_cli.dance.physics.style import NEUTRAL, load_style
-from dancetutor_cli.dance.physics.tuning import Tuning, tuned
+from dancetutor_cli.dance.physics.tuning import Tuning, search_tuning
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
@@ -191,7 +191,7 @@ def tuning_of(body: Skeleton) -> Tuning:
             found = Tuning.from_json(read_json(path))
             if found is not None:
                 return found
-    tuning = tuned(body, load_style(NEUTRAL))
+    tuning = search_tuning(body, load_style(NEUTRAL))
     if path is not None:
         with suppress(OSError, FileError):
             write_atomic(path, json.dumps(tuning.as_json(), indent=1).encode())

@@ -49,7 +49,7 @@ def apply(data: bytes, splices: Iterable[Splice]) -> bytes:
 CONTEXT = 3
 
 
-def unified(name: str, old: bytes | None, new: bytes | None) -> Iterator[str]:
+def unified_diff(name: str, old: bytes | None, new: bytes | None) -> Iterator[str]:
     """Yield the lines of the diff, without line breaks; none if both versions are the same."""
     pairs = list(zip_longest(_lines(old), _lines(new)))
     different = [i for i, (a, b) in enumerate(pairs) if a != b]

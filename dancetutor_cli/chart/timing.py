@@ -21,7 +21,7 @@ SLOWEST, FASTEST = 0.25, 2.0  # limits of the music's speed; beyond them, the so
 _FAR = 1 << 40  # a tick beyond every chart
 
 
-def heard(second: float, rate: float) -> float:
+def heard_second(second: float, rate: float) -> float:
     """Return the second at which the moment `second` of a song is heard if its music plays at `rate` (1: as it is)."""
     return second / rate
 

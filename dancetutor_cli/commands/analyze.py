@@ -17,9 +17,9 @@ from dancetutor_cli.commands.arguments import (
     GivenPath,
     Source,
     WholeNumber,
+    completer_of,
     fixes,
     folder,
-    named,
     note,
     open_output,
     report_error,
@@ -93,21 +93,21 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 @click.option("--exit-zero", is_flag=True, help="Exit with 0 despite findings; unreadable files still exit with 2.")
 @click.option(
     "--select",
-    shell_complete=named(rules, files=False),
+    shell_complete=completer_of(rules, files=False),
     multiple=True,
     metavar="RULES",
     help="Run only these rules, even if they are off: codes (DT201), names (spin) or families (DT2).",
 )
 @click.option(
     "--ignore",
-    shell_complete=named(rules, files=False),
+    shell_complete=completer_of(rules, files=False),
     multiple=True,
     metavar="RULES",
     help="Do not run these rules.",
 )
 @click.option(
     "--config",
-    shell_complete=named(folder("lint")),
+    shell_complete=completer_of(folder("lint")),
     metavar="FILE|NAME",
     help="Use this configuration, not the dancetutor.yaml beside or above PATH.",
 )
@@ -169,7 +169,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 )
 @click.option(
     "--fix",
-    shell_complete=named(fixes, files=False),
+    shell_complete=completer_of(fixes, files=False),
     multiple=True,
     metavar="RULE[:N]|safe",
     help="Write the edits of --suggest into the file: for all findings of a rule, or for its N-th; safe: only edits "
@@ -189,7 +189,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 )
 @click.option(
     "--explain",
-    shell_complete=named(rules, files=False),
+    shell_complete=completer_of(rules, files=False),
     callback=_explain,
     expose_value=False,
     is_eager=True,

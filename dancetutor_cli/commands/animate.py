@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from dancetutor_cli.chart.selection import Selection, note_bytes, one_song
-from dancetutor_cli.chart.timing import FASTEST, SLOWEST, heard
+from dancetutor_cli.chart.timing import FASTEST, SLOWEST, heard_second
 from dancetutor_cli.commands import GroupedCommand
 from dancetutor_cli.commands.arguments import LONG, GivenPath, Number, confirm_long, default_name, warn
 from dancetutor_cli.commands.first_run import announce_compiling
@@ -112,7 +112,7 @@ def command(file: Path, selection: Selection, dance: DanceOptions, options: Anim
     from dancetutor_cli.character.animation import AnimatedDancer, Animation
     from dancetutor_cli.character.characters import DANCER, load_character, name_in_gait
     from dancetutor_cli.character.mesh import partner_of
-    from dancetutor_cli.dance.performance import perform, pooled, solve
+    from dancetutor_cli.dance.performance import perform, piece_runner, solve
     from dancetutor_cli.dance.request import check_request, choice_for, read_chart, with_style
 
     if options.output is not None:
@@ -138,7 +138,7 @@ def command(file: Path, selection: Selection, dance: DanceOptions, options: Anim
     section = _section(choice, options.section, performance)
     _allow_long(performance, section, file, options.yes)
     places = _Places(target, options.report_to, options.plot)
-    animation = Animation(performance, section, pooled(options.jobs))
+    animation = Animation(performance, section, piece_runner(options.jobs))
     for k, who in enumerate((dances,) if len(performance.dancers) == 1 else (dances, partner_of(dances))):
         player = choice.parts[k].player
         own = places if len(performance.dancers) == 1 else places.of(player)
@@ -154,7 +154,7 @@ def _section(choice: ChartChoice, section: str | None, performance: Performance)
     plays = [one.solved.play for one in performance.dancers]
     last = max(float(play.rows.second[-1]) for play in plays if play is not None)
     start, end = section_of(choice, section, last + AFTER)
-    return heard(start, performance.rate), heard(end, performance.rate)
+    return heard_second(start, performance.rate), heard_second(end, performance.rate)
 
 
 @dataclass(frozen=True, slots=True)

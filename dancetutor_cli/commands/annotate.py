@@ -25,7 +25,7 @@ from dancetutor_cli.commands.shared_options import (
     verbose_option,
 )
 from dancetutor_cli.markers.styles import STRIPPED, STYLES
-from dancetutor_cli.reports.terminal import coloured
+from dancetutor_cli.reports.terminal import colour_diff
 from dancetutor_cli.run.errors import UsageError, choose_text
 from dancetutor_cli.run.files import check_folder
 from dancetutor_cli.run.foreign_text import safe
@@ -238,7 +238,7 @@ class _Talk:
             for line in (*outcome.problems, *outcome.lacks):
                 click.echo(safe(line))
         if self.request.diff:
-            for line in coloured(outcome.diff):
+            for line in colour_diff(outcome.diff):
                 click.echo(line)
         elif not self.check and not self.quiet and not outcome.unselected:
             details = _leftover_message(outcome) if self.request.strip else _details(outcome)

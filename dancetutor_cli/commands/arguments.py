@@ -186,7 +186,7 @@ def confirm_long(what: str, verb: str) -> None:
 _Completer = Callable[[click.Context, click.Parameter, str], list[CompletionItem]]
 
 
-def named(names: Callable[[], Iterable[str]], files: bool = True) -> _Completer:
+def completer_of(names: Callable[[], Iterable[str]], files: bool = True) -> _Completer:
     """Return a completer of an option from `names`; if no name fits and `files` is set, the shell completes files."""
 
     def complete(_context: click.Context, _option: click.Parameter, begun: str) -> list[CompletionItem]:

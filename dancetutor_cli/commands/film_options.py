@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.commands.arguments import GivenPath, Number, WholeNumber, folder, named, note
+from dancetutor_cli.commands.arguments import GivenPath, Number, WholeNumber, completer_of, folder, note
 from dancetutor_cli.commands.shared_options import (
     DanceOptions,
     character_option,
@@ -56,7 +56,7 @@ film_options = combined(
     section_option,
     click.option(
         "--layout",
-        shell_complete=named(folder("layouts")),
+        shell_complete=completer_of(folder("layouts")),
         metavar="NAME|FILE",
         help="Where dancer and notes are: a name or a file like those in configs/layouts.  [default: side-by-side; "
         "background with --background]",

@@ -15,7 +15,7 @@ from dancetutor_cli.commands.arguments import report_error, warn, within_folders
 from dancetutor_cli.lint.analysis import analyze_file
 from dancetutor_cli.lint.fix import FIXABLE, FixOutcome, FixTask, fix_file, pick
 from dancetutor_cli.lint.rule import rule_named
-from dancetutor_cli.reports.terminal import coloured
+from dancetutor_cli.reports.terminal import colour_diff
 from dancetutor_cli.run.errors import UsageError, plural
 from dancetutor_cli.run.foreign_text import safe
 
@@ -122,7 +122,7 @@ class _Talk:
             self.failed += 1
             report_error(outcome.error)
             return
-        for line in coloured(outcome.diff) if self.diff else ():
+        for line in colour_diff(outcome.diff) if self.diff else ():
             click.echo(line)
         self.fixed += len(outcome.fixed)
         self.unfixed += sum(not one.is_gone for one in outcome.unfixed)

@@ -16,7 +16,7 @@ from dancetutor_cli.commands.film_options import RenderOptions, film_request
 from dancetutor_cli.commands.folder_run import FolderRun, JoinedWarnings
 from dancetutor_cli.reports.progress import FilmProgress
 from dancetutor_cli.run.errors import FileError
-from dancetutor_cli.run.files import check_file, check_folder, encoded
+from dancetutor_cli.run.files import check_file, check_folder, encode_json
 from dancetutor_cli.run.foreign_text import json_without_commands, safe
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ def _open_results(path: Path | None, stack: ExitStack) -> TextIO | None:
 def _write(results: TextIO | None, line: dict[str, Any]) -> None:
     if results is not None:
         text = json_without_commands(json.dumps(line, ensure_ascii=False))
-        results.write(encoded(text + "\n").decode("utf-8"))
+        results.write(encode_json(text + "\n").decode("utf-8"))
         results.flush()
 
 

@@ -16,9 +16,9 @@ from dancetutor_cli.commands.arguments import (
     Second,
     WholeNumber,
     characters,
+    completer_of,
     difficulties,
     folder,
-    named,
     steps_types,
 )
 from dancetutor_cli.run.errors import UsageError, choose_text
@@ -77,13 +77,13 @@ selection_options = combined(
     click.option(
         "--steps-type",
         metavar="TYPE",
-        shell_complete=named(steps_types, files=False),
+        shell_complete=completer_of(steps_types, files=False),
         help="Only charts of this steps type, such as dance-single.",
     ),
     click.option(
         "--difficulty",
         metavar="NAME",
-        shell_complete=named(difficulties, files=False),
+        shell_complete=completer_of(difficulties, files=False),
         help="Only charts of this difficulty, such as hard.",
     ),
     click.option(
@@ -99,7 +99,7 @@ selection_options = combined(
 
 preset_option = click.option(
     "--preset",
-    shell_complete=named(folder("presets")),
+    shell_complete=completer_of(folder("presets")),
     metavar="NAME|FILE",
     help="Costs that the solver uses.  [default: as dancetutor.yaml says, or pump for pump-*, smx for smx-*, itg for "
     "other steps types]",
@@ -132,7 +132,7 @@ section_option = click.option(
 
 character_option = click.option(
     "--character",
-    shell_complete=named(characters),
+    shell_complete=completer_of(characters),
     default="dancer",
     show_default=True,
     metavar="NAME|FILE",
@@ -149,7 +149,7 @@ dance_options = combined(
     ),
     click.option(
         "--gait",
-        shell_complete=named(folder("gaits")),
+        shell_complete=completer_of(folder("gaits")),
         default="flat",
         show_default=True,
         metavar="NAME|FILE",
@@ -157,7 +157,7 @@ dance_options = combined(
     ),
     click.option(
         "--form",
-        shell_complete=named(folder("forms")),
+        shell_complete=completer_of(folder("forms")),
         default="usual",
         show_default=True,
         metavar="NAME|FILE",
@@ -179,7 +179,7 @@ dance_options = combined(
 ragdoll_options = combined(
     click.option(
         "--style",
-        shell_complete=named(folder("styles")),
+        shell_complete=completer_of(folder("styles")),
         metavar="NAME[:WEIGHT],...",
         help="Add physics: a ragdoll follows the motion. NAME is neutral, lazy, fierce, heavy, feminine, or a style "
         "file like those in configs/styles. In a dance to a chart, a style also changes the steps. Blend styles with "
@@ -243,7 +243,7 @@ def language_option(text: str, default: str | None = None) -> Callable[[_Command
     """Return --language; the command gets the argument `language`, a name in configs/languages. text : its help"""
     return click.option(
         "--language",
-        shell_complete=named(folder("languages"), files=False),
+        shell_complete=completer_of(folder("languages"), files=False),
         metavar="|".join(config_names("languages")),
         default=default,
         show_default=default is not None,

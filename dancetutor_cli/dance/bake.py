@@ -27,7 +27,7 @@ from dancetutor_cli.dance.pieces import (
     RagdollStyle,
     in_turn,
     joined,
-    needed,
+    needed_pieces,
     pieces_of,
 )
 from dancetutor_cli.dance.plan import Plan
@@ -100,11 +100,11 @@ def bake(
     ------
     DancetutorError if the play has no steps or the section is empty.
     """
-    plan, context = planned(timing, play, pad, **manner)
+    plan, context = plan_dance(timing, play, pad, **manner)
     return bake_plan(plan, context, fps, section)
 
 
-def planned(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> tuple[Plan, Context]:
+def plan_dance(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> tuple[Plan, Context]:
     """Return the plan of a play, and the context in which it is danced. Arguments as in `bake`."""
     given, bar = manner.get("settings") or default_settings(), manner.get("bar", False)
     course = given if isinstance(given, SettingsCourse) else SettingsCourse((given,), ())
@@ -157,7 +157,7 @@ def cut(pieces: list[Piece], section: Span, run: PieceRunner = in_turn) -> Baked
         raise DancetutorError(
             f"the section from {start:.3f} s to {end:.3f} s is empty; its start must come before its end"
         )
-    some = pieces[needed(pieces, start, end)]
+    some = pieces[needed_pieces(pieces, start, end)]
     return joined(some, list(run(bake_piece, some)), start, end)
 
 

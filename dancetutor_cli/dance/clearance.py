@@ -33,7 +33,7 @@ def evenness(duration: ArrayLike, step: StepSettings) -> Array:
     return np.asarray(np.clip(missing / max(step.even_slow - step.even_quick, 1e-9), 0.0, 1.0))
 
 
-def travelled(s: ArrayLike, step: StepSettings, even: ArrayLike = 0.0, low: ArrayLike = 0.0) -> Array:
+def travel_share(s: ArrayLike, step: StepSettings, even: ArrayLike = 0.0, low: ArrayLike = 0.0) -> Array:
     """Return how far over the ground a swing has come at each part of its time.
 
     A cubic, slow at both ends: of the curves from rest to rest that were tried, its quick parts throw the body aside
@@ -72,7 +72,7 @@ def hovering(s: Array) -> Array:
     return np.asarray(1.0 - (2.0 * s - 1.0) ** 4)
 
 
-def swung(s: ArrayLike, step: StepSettings) -> Array:
+def turn_share(s: ArrayLike, step: StepSettings) -> Array:
     """Return how far a foot has turned at each part of its swing; it ends its turn a little before it lands."""
     return smooth(np.asarray(s, dtype=np.float64) / step.turned)
 
@@ -161,7 +161,7 @@ def detour(way: Way, other: Array, other_yaw: Array | float, step: StepSettings,
 @lru_cache(maxsize=256)
 def _by_share(step: StepSettings, even: float) -> tuple[Array, Array]:
     """Return how far a swing has come and turned at the `SHARES`; callers must not change the arrays."""
-    return travelled(SHARES, step, even), swung(SHARES, step)
+    return travel_share(SHARES, step, even), turn_share(SHARES, step)
 
 
 def wrung(way: Way, line: Array, step: StepSettings) -> Array:

@@ -21,8 +21,8 @@ from dancetutor_cli.dance.clearance import (
     risen,
     segment_gaps,
     shoe_line,
-    swung,
-    travelled,
+    travel_share,
+    turn_share,
 )
 from dancetutor_cli.dance.plan import STRAIGHT, FootTrack, Gallop, Hover, Jump, Move, Pivot, Shake, Step, Swing, Walk
 from dancetutor_cli.dance.rig.body import BALL_AHEAD, dancer_foot
@@ -65,7 +65,7 @@ def jump_ways(
     settings : `step.apart` is used; where it is not possible, the largest distance that is
     """
     step, least = settings.step, settings.jump.round
-    e, turned = travelled(SHARES, step, settings.jump.even), swung(SHARES, step)
+    e, turned = travel_share(SHARES, step, settings.jump.even), turn_share(SHARES, step)
     aim = headings(start_yaws[:, None] + turned * (end_yaws - start_yaws)[:, None])
     straight = starts[:, None] + e[:, None] * (ends - starts)[:, None]
     middles = starts.mean(axis=0), ends.mean(axis=0)
@@ -188,9 +188,9 @@ def _over_ground(track: FootTrack, times: Array, settings: MotionSettings) -> _O
     s = np.where(swinging, (times - lift[i]) / (land[i] - lift[i]), 0.0)
     even = np.where(_are(track, Step, Hover)[i], evenness(land - lift, step)[i], 0.0)
     even = np.where(_are(track, Jump)[i], settings.jump.even, even)
-    gone = travelled(s, step, even, _low(track, settings.jump.even)[i])
+    gone = travel_share(s, step, even, _low(track, settings.jump.even)[i])
     ground = np.where(swinging[:, None], _ground(track, place, i, gone), place[done])
-    turned = yaw[i] + swung(s, step) * (yaw[np.minimum(i + 1, len(yaw) - 1)] - yaw[i])
+    turned = yaw[i] + turn_share(s, step) * (yaw[np.minimum(i + 1, len(yaw) - 1)] - yaw[i])
     return _OverGround(done, i, swinging, s, even, ground, np.where(swinging, turned, yaw[done]))
 
 
@@ -246,7 +246,7 @@ def _low(track: FootTrack, even: float) -> Array:
 def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], e: Array) -> Array:
     """Ground path: straight and past the other foot, or for jumps partly round the middle between the feet.
 
-    e : as of `travelled`
+    e : as of `travel_share`
     """
     start, end = place[i], place[i + 1]
     bulge = np.array([m.bulge if isinstance(m, Swing) else STRAIGHT for m in track.moves])[i]

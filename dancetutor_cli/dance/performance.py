@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.chart.players import ONE_PAD, OWN_PADS
-from dancetutor_cli.dance.bake import Manner, bake_piece, cut, planned
+from dancetutor_cli.dance.bake import Manner, bake_piece, cut, plan_dance
 from dancetutor_cli.dance.context import PANEL, panels_on_ground
 from dancetutor_cli.dance.ends import (
     entrance_of,
@@ -183,7 +183,7 @@ def perform(solved: Sequence[Solved], request: DanceRequest, rate: float = 1.0) 
         numbers = request.motion, request.form
         settings = load_settings(*numbers) if blend is None else blend.settings(*numbers)
         manner = Manner(settings=settings, bar=request.bar, gait=request.gait, sides=side, person=person, dropped=gone)
-        plan, context = planned(timing, play, own, **manner)
+        plan, context = plan_dance(timing, play, own, **manner)
         place = place_on(pad, one.chart, own) if len(parts) > 1 else (0.0, 0.0)
         dancers.append(Performer(one, own, play, plan, context, place))
     return Performance(request, rate, timing, pad, tuple(dancers), blend)
@@ -216,7 +216,7 @@ def as_heard(play: Play, timing: Timing) -> Play:
     return replace(play, rows=replace(play.rows, second=timing.seconds(play.rows.tick)))
 
 
-def pooled(jobs: int = 1) -> PieceRunner:
+def piece_runner(jobs: int = 1) -> PieceRunner:
     """Return a runner that bakes pieces in up to `jobs` processes, in order, and reads kept pieces from the store."""
     return with_store(in_turn if jobs <= 1 else partial(_pooled, jobs))
 

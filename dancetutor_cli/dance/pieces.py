@@ -170,7 +170,7 @@ def track_from(track: FootTrack, first: int, moves: Sequence[object]) -> FootTra
     return FootTrack(before.target, before.yaw, kept, level)  # type: ignore[arg-type]
 
 
-def needed(pieces: Sequence[Piece], start: float, end: float) -> slice:
+def needed_pieces(pieces: Sequence[Piece], start: float, end: float) -> slice:
     """Return the indices of the pieces that a cut from `start` to `end` (seconds) needs."""
     last = len(pieces) - 1
     touched = [

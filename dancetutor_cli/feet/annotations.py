@@ -121,7 +121,7 @@ class _Pin:
     text: bytes
 
 
-def pinned(song: Song, chart: Chart) -> tuple[list[CellOverride], list[FeetProblem]]:
+def pinned_cells(song: Song, chart: Chart) -> tuple[list[CellOverride], list[FeetProblem]]:
     """Return every pinned cell of a chart, and a problem for each pinned measure that could not be read."""
     pins = list(_pins(song.data, chart))
     if not pins:

@@ -19,7 +19,7 @@ from dancetutor_cli.chart.pack_files import (
     song_stems,
 )
 from dancetutor_cli.chart.players import shares_rows
-from dancetutor_cli.feet.annotations import has_pins, pinned
+from dancetutor_cli.feet.annotations import has_pins, pinned_cells
 from dancetutor_cli.feet.conditions import Condition, When, condition_of
 from dancetutor_cli.feet.limbs import LETTERS, MEANING, UNKNOWN, Limb, Part, limb_and_part
 from dancetutor_cli.feet.overrides import CellOverride, FeetProblem, Ignores, Overrides, contradictions
@@ -150,7 +150,7 @@ class SongFeet:
         in_file = whole if shares_rows(chart) else chart
         if self._editor is None and self._settings is None and not has_pins(song.data, in_file):
             return Overrides.none(), Ignores(), ()
-        pins, problems = pinned(song, in_file)
+        pins, problems = pinned_cells(song, in_file)
         editor = ChartData() if self._editor is None else read_sme(song, whole)
         settings = read_settings(song, whole, self._settings)
         given = (*settings.cells, *editor.cells, *pins)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
-from dancetutor_cli.chart.timing import FASTEST, SLOWEST, heard
+from dancetutor_cli.chart.timing import FASTEST, SLOWEST, heard_second
 from dancetutor_cli.dance.motion import Cut
 from dancetutor_cli.run.errors import DancetutorError, UsageError
 
@@ -48,7 +48,7 @@ class Pass:
 
     def film_seconds(self, second: float) -> float:
         """Return the seconds of the film from the beginning of this run to a second of the music."""
-        return heard(second - self.start, self.rate)
+        return heard_second(second - self.start, self.rate)
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ class Moment:
     @property
     def heard(self) -> float:
         """The second in the music as it is heard: at half speed each event comes at twice its second."""
-        return heard(self.second, self.rate)
+        return heard_second(self.second, self.rate)
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +104,7 @@ class Clock:
         """
         first, last = self.passes[0], self.passes[-1]
         seconds = (first.start, last.end, first.sound_from if first.count else -math.inf, last.until)
-        start, end, steps_from, steps_until = (heard(second, rate) for second in seconds)
+        start, end, steps_from, steps_until = (heard_second(second, rate) for second in seconds)
         return Cut(start, end, steps_from, steps_until if last.rest else math.inf)
 
     def moment(self, frame: int) -> Moment:

@@ -22,7 +22,7 @@ from dancetutor_cli.film.overlay.sprites import WordStyle, callout_words, highwa
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.picture import Frame, darkened
 from dancetutor_cli.film.placement import PartBoxes, Placement, Stay, placement, stay
-from dancetutor_cli.film.plan import FilmPlan, turned
+from dancetutor_cli.film.plan import FilmPlan, faces_viewer
 from dancetutor_cli.film.scene.props import Television
 from dancetutor_cli.film.scroll import parse_scroll
 from dancetutor_cli.film.words import standing_tags
@@ -94,7 +94,7 @@ class Film:
     @cached_property
     def turned(self) -> bool:
         """Whether the dancer faces the viewer. Then all arrows turn with the pad, so that they agree with her steps."""
-        return turned(self.plan.look)
+        return faces_viewer(self.plan.look)
 
     @property
     def _directions(self) -> tuple[float | None, ...]:

@@ -95,7 +95,7 @@ def placement(plan: FilmPlan, boxes: PartBoxes, style: WordStyle, seen: SeenAt |
     passes = plan.clock.passes
     header = None
     if (part := boxes.layout.header) is not None:
-        room = WordsRoom(part.room, taken(lambda: dancing(plan.presses, passes)))
+        room = WordsRoom(part.room, taken(lambda: step_moments(plan.presses, passes)))
         header = Header(plan.words, boxes.box("header"), boxes.scale * part.text, style, room)
     feet = _feet_box(plan, boxes, header)
     legend = _legend(plan, boxes, style, header, feet, turned)
@@ -203,7 +203,7 @@ def moments(callouts: Sequence[Callout], passes: Sequence[Pass]) -> list[Moment]
     return found
 
 
-def dancing(presses: Presses, passes: Sequence[Pass]) -> list[Moment]:
+def step_moments(presses: Presses, passes: Sequence[Pass]) -> list[Moment]:
     """Return moments from the first to the last step of one pass for each rate.
 
     A pass without steps has moments from its start to its end.

@@ -70,7 +70,7 @@ class FilmPlan:
         return left / self.fade if left < self.fade else 1.0
 
 
-def turned(look: FilmLook) -> bool:
+def faces_viewer(look: FilmLook) -> bool:
     """Whether the dancer of this look faces the viewer."""
     part = look.layout.dancer
     if part is None or look.layout.screen is not None:

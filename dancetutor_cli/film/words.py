@@ -36,7 +36,7 @@ def move_words(names: Iterable[str], path: Path, language: Language) -> dict[str
     return {name: table[name] for name in names}
 
 
-def filled(words: str, name: str, at: tuple[Play, int], view: PanelNames) -> list[str]:
+def fill_words(words: str, name: str, at: tuple[Play, int], view: PanelNames) -> list[str]:
     """Return a move's words with limb and place, "right foot: heel on right, toe on up"; one text for each limb.
 
     at : the play and the row

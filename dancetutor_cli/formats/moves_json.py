@@ -47,7 +47,7 @@ from dancetutor_cli.dance.plan import (
 )
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.play import StepKind
-from dancetutor_cli.run.files import encoded, write_atomic
+from dancetutor_cli.run.files import encode_json, write_atomic
 
 SCHEMA = 1
 _FEET = ("left_foot", "right_foot")
@@ -61,7 +61,7 @@ KINDS: dict[type[Move], str] = {  # names of moves in the file
 
 def write_moves(path: Path, data: dict[str, Any]) -> None:
     """Write what `moves_data` returns. Raises FileError."""
-    write_atomic(path, encoded(json.dumps(data, ensure_ascii=False, indent=1) + "\n"))
+    write_atomic(path, encode_json(json.dumps(data, ensure_ascii=False, indent=1) + "\n"))
 
 
 def moves_data(

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.run.errors import FileError, MissingFileError
-from dancetutor_cli.run.files import encoded, write_atomic
+from dancetutor_cli.run.files import encode_json, write_atomic
 from dancetutor_cli.run.reading import read_json
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ class Baseline:
         entries = [json.dumps(_entry(key, count), ensure_ascii=False) for key, count in sorted(self.allowed.items())]
         body = ",\n  ".join(entries)
         text = f'{{"schema": {SCHEMA}, "entries": [\n  {body}\n]}}\n'
-        write_atomic(self.path, encoded(text))
+        write_atomic(self.path, encode_json(text))
 
     def _relative(self, file: str) -> str:
         return Path(os.path.relpath(Path(file).absolute(), self.path.absolute().parent)).as_posix()

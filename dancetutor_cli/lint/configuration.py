@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 from dancetutor_cli.chart.pack_files import SETTINGS_FILE, check_not_a_link_out
 from dancetutor_cli.feet.conditions import Condition, When, condition_of
 from dancetutor_cli.feet.preset import preset_names
-from dancetutor_cli.lint.rule import matching, named_singly
+from dancetutor_cli.lint.rule import match_codes, named_singly
 from dancetutor_cli.lint.rule_settings import Layer, RulesKeys, Settings, layer_of, resolve_name
 from dancetutor_cli.run.errors import FileError, UsageError, choose_text
 from dancetutor_cli.run.reading import config_names, config_path, is_outside, is_regular, shown_key
@@ -116,7 +116,7 @@ def with_selection(configuration: Configuration, select: Sequence[str], ignore: 
 def _codes(selectors: Iterable[str]) -> frozenset[str]:
     found: frozenset[str] = frozenset()
     for selector in selectors:
-        found |= matching(selector)
+        found |= match_codes(selector)
     return found
 
 
@@ -201,4 +201,4 @@ def _check_feet(source: MarkedYaml) -> None:
 
     for number, entry in enumerate(entries_of(source)):
         for rule in {rule for rules in entry.ignore.values() for rule in rules}:
-            resolve_name(source, matching, rule, ("feet", number, "ignore"))
+            resolve_name(source, match_codes, rule, ("feet", number, "ignore"))

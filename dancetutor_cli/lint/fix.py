@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from dancetutor_cli.chart.edits import apply, check_edit, unified
+from dancetutor_cli.chart.edits import apply, check_edit, unified_diff
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.names import TICKS_PER_MEASURE, is_lights
 from dancetutor_cli.feet.preset import Preset, preset_for
@@ -123,7 +123,7 @@ def _fix(job: FixTask) -> FixOutcome:
     new = session.song.data
     if job.write and new != song.data:
         _write(job, song.data, new)
-    diff = tuple(unified(str(task.path), song.data, new))
+    diff = tuple(unified_diff(str(task.path), song.data, new))
     return FixOutcome(tuple(session.fixed), tuple(session.unfixed), None, diff, tuple(_notes(job, session)))
 
 

@@ -87,7 +87,7 @@ def _cells_of_row(data: bytes, chart: Chart, row: int) -> Iterator[Cell]:
         yield Cell(start + column, tick, column, line, text[column : column + 1])
 
 
-def replaced(cells: Iterable[tuple[Cell, bytes]]) -> tuple[Splice, ...]:
+def replace_cells(cells: Iterable[tuple[Cell, bytes]]) -> tuple[Splice, ...]:
     """Return the splices that replace the characters of cells."""
     return tuple(Splice(cell.at, cell.at + 1, text) for cell, text in cells)
 
@@ -118,7 +118,7 @@ def move_notes(data: bytes, chart: Chart, finding: Finding, edit: Suggestion) ->
         gone.add((move.tick, move.column, int(notes.kind[found[0]]), -1))
         come.add((move.tick, move.to, int(notes.kind[found[0]]), -1))
     line = frozenset({finding.line or 0})
-    return Fix(finding.rule, line, edit.words, replaced(cells), frozenset(gone), frozenset(come))
+    return Fix(finding.rule, line, edit.words, replace_cells(cells), frozenset(gone), frozenset(come))
 
 
 # The safe fixes: mines between the ends of a hold, halves of holds, notes less than 3 ms off the grid.
@@ -177,7 +177,7 @@ def _of_column(cells: list[Cell]) -> Iterator[Fix]:
 def _dropped(cell: Cell, what: str) -> Fix:
     """Return the fix that removes half a hold. The games discard it too, so they read the same notes as before."""
     words = f"remove {what} on beat {_beat(cell)}; the games drop it as well"
-    return Fix(BROKEN_HOLD, frozenset({cell.line}), words, replaced([(cell, EMPTY)]))
+    return Fix(BROKEN_HOLD, frozenset({cell.line}), words, replace_cells([(cell, EMPTY)]))
 
 
 def _without_mines(head: Cell, mines: list[Cell], tail: Cell) -> Fix:
@@ -189,7 +189,7 @@ def _without_mines(head: Cell, mines: list[Cell], tail: Cell) -> Fix:
         BROKEN_HOLD,
         frozenset({head.line, tail.line}),
         words,
-        replaced((mine, EMPTY) for mine in mines),
+        replace_cells((mine, EMPTY) for mine in mines),
         gone=frozenset((mine.tick, mine.column, int(Kind.MINE), -1) for mine in mines),
         come=frozenset({(head.tick, head.column, int(kind), tail.tick)}),
     )
@@ -210,7 +210,7 @@ def _off_grid(data: bytes, chart: Chart, grid: Sequence[int]) -> Iterator[Fix]:
         gone = frozenset(note for note, new in changed.items() if note != new)
         words = f"move {count} row{'s' if count > 1 else ''} from beat {round(first / TICKS_PER_BEAT, 3):g} to the grid"
         come = frozenset(changed[note] for note in gone)
-        yield Fix(OFF_GRID, frozenset({line}), f"{words}, each by less than 3 ms", replaced(cells), gone, come)
+        yield Fix(OFF_GRID, frozenset({line}), f"{words}, each by less than 3 ms", replace_cells(cells), gone, come)
 
 
 def _is_on(tick: int, grid: Sequence[int]) -> bool:

@@ -101,7 +101,7 @@ def goes_on_the_other_foot(subject: ChartSubject, row: int, quick: float, *, jac
         return False
     rows = subject.step_rows
     first, last = segment(subject, int(rows.searchsorted(row)), quick, forwards_only=jacked)
-    stand = standing(subject, int(rows[first])) if jacked else None
+    stand = panels_before(subject, int(rows[first])) if jacked else None
     return exchanged_is_uncrossed(subject, rows[first : last + 1], stand)
 
 
@@ -111,7 +111,7 @@ def segment(subject: ChartSubject, at: int, quick: float, *, forwards_only: bool
     return at if forwards_only else first, last
 
 
-def standing(subject: ChartSubject, row: int) -> list[int]:
+def panels_before(subject: ChartSubject, row: int) -> list[int]:
     """Return the panels of both feet before a row, -1 for a foot that may be anywhere."""
     assert subject.play is not None
     return [int(one) for one in subject.play.feet[row - 1][:2]] if row else [-1, -1]
@@ -264,7 +264,7 @@ def _starts(subject: ChartSubject, first: int, *, anew: bool) -> dict[_Stand, in
     assert play is not None
     if anew:
         return {_Stand((_UNKNOWN, _UNKNOWN), _UNKNOWN, 0.0, False): 0}
-    left, right = standing(subject, int(rows[first]))
+    left, right = panels_before(subject, int(rows[first]))
     last = int(play.limb[int(rows[first - 1])].max())
     return {_Stand((left, right), last, float(play.facing[int(rows[first]) - 1]), False): 0}
 

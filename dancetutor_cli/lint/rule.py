@@ -330,7 +330,7 @@ def rule_named(name: str) -> type[Rule]:
     raise UsageError(f"there is no rule '{name}'{near}; see --explain all")
 
 
-def matching(selector: str) -> set[str]:
+def match_codes(selector: str) -> set[str]:
     """Return the codes that a selector means: a code, a name, a beginning of codes such as "DT2", or "all"."""
     if selector.lower() == "all":
         return set(all_rules())

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, TypeVar
 
 from dancetutor_cli.feet.conditions import Condition
-from dancetutor_cli.lint.rule import BY_METER, all_rules, matching, named_singly, rule_named
+from dancetutor_cli.lint.rule import BY_METER, all_rules, match_codes, named_singly, rule_named
 from dancetutor_cli.run.errors import DancetutorError, FileError
 from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.schema import Keys, MarkedYaml, NotNegative, Parsed, Text, Texts, check_value
@@ -140,7 +140,7 @@ def default_severity(code: str) -> str:
     severity = str(data["rules"][code]["severity"])
     for entry in data.get("overrides", ()):
         for name, options in entry["rules"].items():
-            if matching(str(name)) == {code} and not isinstance(options, Mapping):
+            if match_codes(str(name)) == {code} and not isinstance(options, Mapping):
                 severity += f"; {options} for {' of '.join(map(_worded, entry['when'].values()))}"
     return severity
 
@@ -170,7 +170,7 @@ def layer_of(source: MarkedYaml, entry: RulesKeys, when: Condition, place: Keys)
         code = resolve_name(source, rule_named, name, at).code
         rules[code] = _options(source, code, options, at)
     selected, ignored = (
-        [resolve_name(source, matching, selector, (*place, key)) for selector in getattr(entry, key) or ()]
+        [resolve_name(source, match_codes, selector, (*place, key)) for selector in getattr(entry, key) or ()]
         for key in ("select", "ignore")
     )
     select = None if entry.select is None else frozenset[str]().union(*selected)
@@ -282,7 +282,7 @@ def limit_of(band: Band, share: float) -> int:
     return max(few, default=0)
 
 
-def described(move: str, share: float, slowest: float = math.inf) -> Iterator[str]:
+def describe_bands(move: str, share: float, slowest: float = math.inf) -> Iterator[str]:
     """Yield a line for each band: the limit, at most `slowest` (s), and the shares of charts on both sides of it."""
     times = milliseconds()
     for band in bands(move):

@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from dancetutor_cli.chart.edits import apply, unified
+from dancetutor_cli.chart.edits import apply, unified_diff
 from dancetutor_cli.chart.reader import load, parse
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.preset import preset_for
@@ -222,7 +222,7 @@ class _Work:
 
     def _diff(self) -> Iterator[str]:
         for change in self.changes:
-            yield from unified(str(change.path), change.old, change.new)
+            yield from unified_diff(str(change.path), change.old, change.new)
 
     @property
     def _in_place(self) -> bool:

@@ -62,7 +62,7 @@ def write(song: Song, feet: ChartFeet, force: bool) -> NoteChange:
 
 def strip(song: Song, chart: Chart, force: bool) -> NoteChange:
     """Remove the markers of a chart, and count the pinned ones, which stay without `force`."""
-    left = 0 if force else pinned(song.data, chart)
+    left = 0 if force else count_pinned(song.data, chart)
     splices = []
     for line in measure_lines(song.data, chart):
         comment = song.data[line.start : line.end]
@@ -96,7 +96,7 @@ def _updates(data: bytes, feet: ChartFeet, force: bool) -> tuple[list[Splice], l
     return splices, states
 
 
-def pinned(data: bytes, chart: Chart) -> int:
+def count_pinned(data: bytes, chart: Chart) -> int:
     """Return the number of pinned measures of a chart."""
     comments = (data[line.start : line.end] for line in measure_lines(data, chart))
     return sum(any(match["pin"] for match in markers_in(comment)) for comment in comments)

@@ -19,7 +19,7 @@ from dancetutor_cli.feet.annotations import StepRows
 from dancetutor_cli.feet.limbs import Limb, Part, letter
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.run.errors import FileError, MissingFileError
-from dancetutor_cli.run.files import encoded
+from dancetutor_cli.run.files import encode_json
 from dancetutor_cli.run.reading import CHART_LIMIT, parse_json, read_bytes
 
 
@@ -114,7 +114,7 @@ def own_json(path: Path, old: bytes, what: str, fits: Callable[[Any], bool]) -> 
     """
     data, is_ours = None, False
     with suppress(FileError, KeyError, TypeError, AttributeError):
-        data = parse_json(encoded(old.decode("utf-8", "surrogateescape")), path)
+        data = parse_json(encode_json(old.decode("utf-8", "surrogateescape")), path)
         is_ours = data["program"] == "dancetutor" and fits(data)
     check_is_ours(path, is_ours, what)
     return data

@@ -21,7 +21,7 @@ from dancetutor_cli.markers.model import (
     own_json,
     removal_of,
 )
-from dancetutor_cli.run.files import encoded
+from dancetutor_cli.run.files import encode_json
 
 SUFFIX = ".dancetutor.json"
 _SCHEMA = 1
@@ -126,4 +126,4 @@ def _dump(files: dict[str, Any]) -> bytes:
         lines = json_lines(files[name]["charts"])
         blocks.append(f'  {json.dumps(name, ensure_ascii=False)}: {{"charts": [\n{lines}]}}')
     head = f'{{"schema": {_SCHEMA}, "program": "dancetutor", "files": {{\n'
-    return encoded(head + ",\n".join(blocks) + "}}\n")
+    return encode_json(head + ",\n".join(blocks) + "}}\n")

@@ -26,7 +26,7 @@ from dancetutor_cli.markers.model import (
     removal_of,
 )
 from dancetutor_cli.markers.sidecar import notes_hash
-from dancetutor_cli.run.files import encoded
+from dancetutor_cli.run.files import encode_json
 
 # The moves that a theme can announce to a player: crossovers, brackets and turns.
 
@@ -192,13 +192,13 @@ def as_json(table: dict[str, Any]) -> bytes:
         cues = json_lines(chart["cues"])
         blocks.append(f'  {about[:-1]}, "cues": [\n{cues}]}}' if cues else f'  {about[:-1]}, "cues": []}}')
     text = json.dumps(head, ensure_ascii=False)[:-1] + ', "charts": [\n' + ",\n".join(blocks) + "]}\n"
-    return encoded(text)
+    return encode_json(text)
 
 
 def as_lua(table: dict[str, Any]) -> bytes:
     """Return the Lua file: a chunk that returns the same table and calls no function."""
     body = "\n".join(_lua_lines(table, 0))
-    return _HEAD + b"; docs/theme.md tells what stands in it\nreturn " + encoded(body) + b"\n"
+    return _HEAD + b"; docs/theme.md tells what stands in it\nreturn " + encode_json(body) + b"\n"
 
 
 def _lua_lines(value: Any, depth: int) -> Iterator[str]:

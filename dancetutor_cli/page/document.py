@@ -144,19 +144,19 @@ def document(doc: Mapping[str, Any], blob: Blob, music: bytes | None = None, kin
     title = " - ".join(part for part in (doc["words"]["title"], doc["words"]["badge"], "dancetutor") if part)
     music_text = "" if music is None else base64.b64encode(music).decode("ascii")
     body = _fill("page.html", {"data": data, "music": music_text, "script": script})
-    return whole(policy(script, style), title, style, body)
+    return html_file(content_policy(script, style), title, style, body)
 
 
-def whole(policy: str, title: str, style: str, body: str) -> bytes:
+def html_file(policy: str, title: str, style: str, body: str) -> bytes:
     """Return an HTML file with this Content-Security-Policy; body : markup; title : text."""
     icon = '<link rel="icon" href="data:,">\n'  # prevents a request of the browser for an icon
     return page(policy, title, style, body, head=icon).encode("utf-8")
 
 
-def listed(title: str, items: str, style: str) -> bytes:
+def list_page(title: str, items: str, style: str) -> bytes:
     """Return a page without script: a heading and markup below it."""
     rules = f"default-src 'none'; style-src '{hash_of(style)}'; img-src data:; base-uri 'none'; form-action 'none'"
-    return whole(rules, title, style, _fill("index.html", {"title": html.escape(title), "songs": items}))
+    return html_file(rules, title, style, _fill("index.html", {"title": html.escape(title), "songs": items}))
 
 
 def _fill(template: str, values: Mapping[str, str]) -> str:
@@ -164,7 +164,7 @@ def _fill(template: str, values: Mapping[str, str]) -> str:
     return _PLACE.sub(lambda found: values[found[1]], (HERE / template).read_text("utf-8"))
 
 
-def policy(script: str, style: str) -> str:
+def content_policy(script: str, style: str) -> str:
     """Return a Content-Security-Policy: only this script and style, pictures and sound of the page, and no network."""
     return (
         f"default-src 'none'; script-src '{hash_of(script)}'; style-src '{hash_of(style)}'; "
@@ -218,4 +218,4 @@ def index_page(entries: Sequence[IndexEntry], title: str) -> bytes:
         by = f" <small>{html.escape(artist)}</small>" if artist else ""
         links = "".join(f'<li><a href="{quote(one.file)}">{html.escape(one.label)}</a></li>' for one in group)
         songs.append(f"<h2>{html.escape(name)}{by}</h2>\n<ul>{links}</ul>")
-    return listed(title, "\n".join(songs), style)
+    return list_page(title, "\n".join(songs), style)

@@ -14,7 +14,7 @@ from dancetutor_cli.character.mesh import with_foot_colours
 from dancetutor_cli.chart.music import find_music
 from dancetutor_cli.chart.selection import FolderReader, Selection, UnreadableFile
 from dancetutor_cli.dance.motion import Cut, shifted
-from dancetutor_cli.dance.performance import pad_of, perform, play_of_all, playable, pooled, solve
+from dancetutor_cli.dance.performance import pad_of, perform, piece_runner, play_of_all, playable, solve
 from dancetutor_cli.dance.request import check_request, read_chart
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.feet.pads import load_pad
@@ -165,7 +165,7 @@ def _motions(request: PageRequest, solved: tuple[Solved, ...]) -> list[Motion]:
     """Return the motion of each dancer at her place on the common pad, without walks onto the pad or off it."""
     performance = perform(solved, request.dance)
     whole = Cut(*performance.span, walks_on=False, walks_off=False)
-    done = performance.motions(whole, run=pooled(request.jobs))
+    done = performance.motions(whole, run=piece_runner(request.jobs))
     return [shifted(one.motion, *who.place) for one, who in zip(done, performance.dancers, strict=True)]
 
 

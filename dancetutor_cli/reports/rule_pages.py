@@ -8,7 +8,7 @@ import textwrap
 from typing import Any
 
 from dancetutor_cli.lint.rule import BY_METER, FAMILIES, Rule, TimedRule, all_rules
-from dancetutor_cli.lint.rule_settings import default_rules, default_severity, described
+from dancetutor_cli.lint.rule_settings import default_rules, default_severity, describe_bands
 
 _UNITS = {
     "max_seconds": "s", "min_seconds": "s", "mine_seconds": "s", "tolerance": "s", "DT601 tolerance": "ms",
@@ -36,7 +36,7 @@ def explain(rule: type[Rule]) -> str:
             "",
             f"The slowest {rule.times} that is reported, by meter (at most {share:g} % of the charts are as quick):",
         ]
-        lines += [f"  {line}" for line in described(rule.times, share, rule.slowest)]
+        lines += [f"  {line}" for line in describe_bands(rule.times, share, rule.slowest)]
     return "\n".join(lines) + "\n"
 
 

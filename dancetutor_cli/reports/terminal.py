@@ -84,7 +84,7 @@ def _colours(console: Console) -> ColorSystem | None:
 _STYLES = {"+": "green", "-": "red", "@": "cyan"}
 
 
-def coloured(diff: Iterable[str]) -> Iterator[str]:
+def colour_diff(diff: Iterable[str]) -> Iterator[str]:
     """Yield the lines of a diff, in colours if standard output has them."""
     paint = terminal_of(sys.stdout).paint
     for line in diff:

@@ -86,7 +86,7 @@ def write_atomic(path: Path, data: bytes | Callable[[BinaryIO], object], *, expe
     _sync_folder(target.parent)
 
 
-def encoded(text: str) -> bytes:
+def encode_json(text: str) -> bytes:
     """Encode JSON text in UTF-8. Undecodable bytes of a file name are written as \\udcXX, which reading restores."""
     return _LONE.sub(lambda found: f"\\u{ord(found[0]):04x}", text).encode("utf-8")
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from dancetutor_cli.dance.bake import planned
+from dancetutor_cli.dance.bake import plan_dance
 from dancetutor_cli.dance.context import Context, context_of
 from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.settings import default_settings
@@ -94,4 +94,4 @@ MEDLEY: list[Event] = [
 
 def plan_of(timing: Any, danced: Play, panels: Pad, **manner: Any) -> Plan:
     """Only the moves of a play, without its context. Arguments as in `planned`."""
-    return planned(timing, danced, panels, **manner)[0]
+    return plan_dance(timing, danced, panels, **manner)[0]

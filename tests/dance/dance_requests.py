@@ -10,7 +10,7 @@ import numpy as np
 
 from dancetutor_cli.character.animation import Animation
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.chart.timing import heard
+from dancetutor_cli.chart.timing import heard_second
 from dancetutor_cli.commands.animate import AFTER
 from dancetutor_cli.dance.motion import Motion, sample
 from dancetutor_cli.dance.performance import perform, solve
@@ -44,7 +44,7 @@ def animated(request: DanceRequest, section: str | None = None, rate: float = 1.
         return Animation(performance)
     last = max(float(one.solved.play.rows.second[-1]) for one in performance.dancers if one.solved.play is not None)
     start, end = section_of(choice, section, last + AFTER)
-    return Animation(performance, (heard(start, rate), heard(end, rate)))
+    return Animation(performance, (heard_second(start, rate), heard_second(end, rate)))
 
 
 def baked(request: DanceRequest, section: str | None = None, rate: float = 1.0) -> Motion:

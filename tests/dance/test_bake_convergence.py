@@ -9,7 +9,7 @@ import pytest
 from bake_plays import MEDLEY, chart, pad, play
 
 from dancetutor_cli.dance import quadratic
-from dancetutor_cli.dance.bake import bake, bake_plan, planned
+from dancetutor_cli.dance.bake import bake, bake_plan, plan_dance
 from dancetutor_cli.dance.pieces import whole_span
 from dancetutor_cli.dance.quadratic import BandedLeastSquares, ConvergenceError, Limits, Solution, solve_surely
 from dancetutor_cli.dance.quality.report import report
@@ -58,7 +58,7 @@ def test_a_bake_says_what_gave_way_and_is_still_a_motion(monkeypatch: pytest.Mon
         return found if most else replace(found, is_feasible=False, x=np.full_like(found.x, np.nan))
 
     monkeypatch.setattr(quadratic, "solve", once)
-    plan, context = planned(chart().timing, play(MEDLEY), pad())
+    plan, context = plan_dance(chart().timing, play(MEDLEY), pad())
     motion = bake_plan(plan, context, 60.0, (3.0, 6.0))
     assert [note.split(" no path of ")[1].split(" keeps")[0] for note in motion.notes] == [
         "the balance", "the height of the body"

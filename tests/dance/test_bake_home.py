@@ -11,7 +11,7 @@ from bake_mirror import mirrored_play
 from bake_plays import Event, L, R, chart, pad, plan_of, play
 
 from dancetutor_cli.dance.bake import bake
-from dancetutor_cli.dance.footwork.footfalls import stand_at, standing
+from dancetutor_cli.dance.footwork.footfalls import current_stand, stand_at
 from dancetutor_cli.dance.plan import Plan, Sidestep, Swing
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.settings import default_settings
@@ -46,10 +46,10 @@ def test_she_rests_on_the_pads_middle_facing_the_screen(wait: float) -> None:
     assert found[0][1].lift >= LAST + (settings.home.pause if wait > 3.0 else settings.home.pause_least)
     assert found[-1][1].land <= LAST + min(2.0, wait - settings.walk.settle) + 1e-9
     assert min(s.land - s.lift for _, s in found) >= settings.home.step_least, "a human pace"
-    rest = standing(plan.feet, found[-1][1].land, plan.turns)
+    rest = current_stand(plan.feet, found[-1][1].land, plan.turns)
     np.testing.assert_allclose(rest.balls, home.balls, atol=1e-9)
     np.testing.assert_allclose(rest.yaws, home.yaws, atol=1e-9)
-    assert rest.heading == 0.0 and abs(standing(plan.feet, LAST, plan.turns).heading) > 0.5
+    assert rest.heading == 0.0 and abs(current_stand(plan.feet, LAST, plan.turns).heading) > 0.5
 
 
 def test_the_notes_after_it_are_on_time() -> None:

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from bake_plays import MEDLEY, chart, pad, play, stream
 
-from dancetutor_cli.dance.bake import planned
+from dancetutor_cli.dance.bake import plan_dance
 from dancetutor_cli.dance.foot_path import both_feet
 from dancetutor_cli.dance.settle import ROUNDS_WITH_PALMS, SETTLE_ROUNDS, SettledTrajectory, settle
 
 
 def settled(events: list, until: float) -> SettledTrajectory:  # type: ignore[type-arg]
-    plan, context = planned(chart().timing, play(events), pad())
+    plan, context = plan_dance(chart().timing, play(events), pad())
     grid = np.arange(240.0, 240.0 * until) / 240.0
     return settle(plan, grid, both_feet(plan.feet, grid, context.settings), context)
 

@@ -10,7 +10,7 @@ import pytest
 from dance_requests import baked
 
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.dance.footwork.turning import passing
+from dancetutor_cli.dance.footwork.turning import passing_turn
 from dancetutor_cli.dance.motion import Motion, sample
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.request import DanceRequest
@@ -175,6 +175,6 @@ def test_where_a_foot_can_pass_either_way(
     turn: float, normal: float, foot: int, seconds: float, front: float, behind: float
 ) -> None:
     step = default_settings().step
-    assert passing(turn, normal, foot, seconds, step) == turn
-    assert passing(turn, normal, foot, seconds, replace(step, crossing=1.0)) == front
-    assert passing(turn, normal, foot, seconds, replace(step, crossing=2.0)) == behind
+    assert passing_turn(turn, normal, foot, seconds, step) == turn
+    assert passing_turn(turn, normal, foot, seconds, replace(step, crossing=1.0)) == front
+    assert passing_turn(turn, normal, foot, seconds, replace(step, crossing=2.0)) == behind

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.dance.bake import bake_plan, cut, planned
+from dancetutor_cli.dance.bake import bake_plan, cut, plan_dance
 from dancetutor_cli.dance.motion import Distances, Motion, sample
 from dancetutor_cli.dance.physics.blend import Blend, load_choice, mean_distances
 from dancetutor_cli.dance.physics.pipeline import RagdollOptions, through_ragdoll
@@ -160,7 +160,7 @@ def test_numbers_of_a_style_come_between_the_form_and_the_users_file(tmp_path: P
 def test_a_blend_is_between_its_styles() -> None:
     turns = (0, 3, 1, 2, 0, 3, 2, 1)
     events = [(1.0 + 0.4 * k, {c: (plays.L, plays.R)[k % 2]}) for k, c in enumerate(turns)]
-    plan, context = planned(plays.chart().timing, plays.play(events), plays.pad())
+    plan, context = plan_dance(plays.chart().timing, plays.play(events), plays.pad())
     given = bake_plan(plan, context, 60.0)
     lazy, fierce = load_style("lazy"), load_style("fierce")
     both = Blend((lazy, fierce), ((0.5, 0.5),))
@@ -197,7 +197,7 @@ def pieces_in(style: str) -> list[Piece]:
     events += [(2 * m + 2.1, {0: plays.L, 3: plays.R}) for m in range(6)]
     blend = load_choice(style).blend(timing)
     manner = {"settings": blend.settings(None, "usual")}
-    plan, context = planned(timing, plays.play(sorted(events, key=lambda e: e[0])), plays.pad(), **manner)  # type: ignore[arg-type]
+    plan, context = plan_dance(timing, plays.play(sorted(events, key=lambda e: e[0])), plays.pad(), **manner)  # type: ignore[arg-type]
     return list(pieces_of(plan, context, 60.0, RagdollStyle(blend, RagdollOptions())))
 
 
@@ -269,7 +269,7 @@ def test_steps_home_are_those_of_the_style_of_their_time() -> None:
     events = [(0.5, {0: plays.L}), (1.0, {3: plays.R}), (1.5, {0: plays.L}), (9.0, {3: plays.R})]
     course = SettingsCourse((usual, out), ((2.0, 2.5),))
     timing, play, pad = plays.chart().timing, plays.play(events), plays.pad()
-    plans = [planned(timing, play, pad, settings=settings)[0] for settings in (course, out)]
+    plans = [plan_dance(timing, play, pad, settings=settings)[0] for settings in (course, out)]
     yaws = [[round(m.yaw, 6) for track in plan.feet for m in track.moves if 2.5 < m.land < 8.9] for plan in plans]
     assert yaws[0] == yaws[1] and len(yaws[0]) >= 2
 

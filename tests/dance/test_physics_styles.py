@@ -9,7 +9,7 @@ import pytest
 from bake_mirror import mirrored_motion
 
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.dance.bake import bake_piece, planned
+from dancetutor_cli.dance.bake import bake_piece, plan_dance
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.performance import perform, solve
@@ -49,7 +49,7 @@ class Passage:
 
 
 def by_hand(events: list[plays.Event]) -> Passage:
-    plan, context = planned(plays.chart().timing, plays.play(events), plays.pad())
+    plan, context = plan_dance(plays.chart().timing, plays.play(events), plays.pad())
     return Passage(plan, context, (0.6, 4.0))
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.reader import parse
-from dancetutor_cli.feet.annotations import pinned
+from dancetutor_cli.feet.annotations import pinned_cells
 from dancetutor_cli.feet.limbs import LETTERS, Limb, NotationError, Part, letter, marker
 from dancetutor_cli.feet.limbs import parse as parse_tokens
 from dancetutor_cli.feet.overrides import FeetProblem, Overrides, contradictions
@@ -30,7 +30,7 @@ def song_of(measures: bytes) -> Song:
 
 def read_pins(song: Song) -> tuple[Overrides, tuple[FeetProblem, ...]]:
     """The pinned feet of the first chart, but those that contradict themselves or what came before; all problems."""
-    said, problems = pinned(song, song.charts[0])
+    said, problems = pinned_cells(song, song.charts[0])
     good, contradictory = contradictions(song.charts[0], said)
     return Overrides.of({(s.tick, s.column): (s.limb, s.part) for s in good}), (*problems, *contradictory)
 

@@ -15,7 +15,7 @@ from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.notes import Callout, Presses
-from dancetutor_cli.film.placement import MOMENT_STEP, MOST_MOMENTS, clear, dancing, moments
+from dancetutor_cli.film.placement import MOMENT_STEP, MOST_MOMENTS, clear, moments, step_moments
 from dancetutor_cli.run.reading import config_names
 
 BOX = (100, 10, 300, 60)
@@ -65,11 +65,11 @@ def test_without_a_step_she_stands_there_for_a_whole_run() -> None:
     for steps in ([], [3.0], [15.0, 16.0]):
         at = np.array(steps)
         presses = Presses(at, at, np.zeros(len(at), np.int16), np.zeros(len(at), np.int8))
-        assert [moment.second for moment in dancing(presses, [run])] == pytest.approx(
+        assert [moment.second for moment in step_moments(presses, [run])] == pytest.approx(
             np.arange(10.0, 12.0, MOMENT_STEP)
         )
     at = np.array([11.0, 20.0])
-    danced = dancing(Presses(at, at, np.zeros(2, np.int16), np.zeros(2, np.int8)), [run])
+    danced = step_moments(Presses(at, at, np.zeros(2, np.int16), np.zeros(2, np.int8)), [run])
     assert danced[0].second == 11.0 and len(danced) == round(1.0 / MOMENT_STEP)
 
 

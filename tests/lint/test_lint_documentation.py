@@ -19,7 +19,7 @@ from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solver.solve import solve_chart
-from dancetutor_cli.lint.rule import ChartRule, ReaderRule, all_rules, matching, named_singly, rule_named
+from dancetutor_cli.lint.rule import ChartRule, ReaderRule, all_rules, match_codes, named_singly, rule_named
 from dancetutor_cli.lint.rule_settings import default_rules
 from dancetutor_cli.lint.subject import ChartSubject
 
@@ -112,4 +112,4 @@ def _has_itg() -> bool:
 
 @pytest.mark.parametrize(("former", "code"), [("ambiguous-start", "DT207"), ("feet-wish", "DT111")])
 def test_the_former_name_of_a_rule_still_selects_it(former: str, code: str) -> None:
-    assert matching(former) == {code} == named_singly([former]) and rule_named(former.upper()).code == code
+    assert match_codes(former) == {code} == named_singly([former]) and rule_named(former.upper()).code == code

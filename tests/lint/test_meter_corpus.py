@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dancetutor_cli.lint.meter.estimate import on_scale, scales_of, sized
+from dancetutor_cli.lint.meter.estimate import measure_chart, on_scale, scales_of
 from dancetutor_cli.lint.meter.model import model_for
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "research"))
@@ -29,7 +29,7 @@ def test_real_charts_play_like_their_meters(corpus: Path, tmp_path: Path) -> Non
             by_file[one.file].append(one)
     misses, inside = [], []
     for of_file in by_file.values():
-        found = [sized(model, one.values, (one.meter, one.difficulty)) for one in of_file]
+        found = [measure_chart(model, one.values, (one.meter, one.difficulty)) for one in of_file]
         for one, this, (scale, known) in zip(of_file, found, scales_of(found, of_file[0].tag), strict=True):
             if known:
                 told = on_scale(this, scale, known)

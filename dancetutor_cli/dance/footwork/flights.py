@@ -14,9 +14,9 @@ from dancetutor_cli.dance.footwork.foothold import (
     Pose,
     around,
     heel_up,
+    is_touching,
     pose,
     resolve_overlap,
-    touching,
 )
 from dancetutor_cli.dance.footwork.footing import Footing, FootState, Proposal, Row, TakeOff, pair
 from dancetutor_cli.dance.plan import STRAIGHT, Bulge, Jump
@@ -142,7 +142,7 @@ def leap(row: Row, foot: FootState, goal: tuple[Array, float], columns: list[int
     landed = Pose(goal[0], footing.toes(foot, goal[1]))
     away = goal[0] - other.ball
     far = float(np.linalg.norm(away))
-    in_the_way = touching(landed, pose(footing, other), step.touching)
+    in_the_way = is_touching(landed, pose(footing, other), step.touching)
     if far <= step.leap and not in_the_way:
         return None
     apex = jump.apex_near if in_the_way else jump.apex_far

@@ -40,7 +40,7 @@ class Stand:
         return np.asarray((left + right) / 2)
 
 
-def standing(feet: tuple[FootTrack, FootTrack], time: float, turns: tuple[Turn, ...] = ()) -> Stand:
+def current_stand(feet: tuple[FootTrack, FootTrack], time: float, turns: tuple[Turn, ...] = ()) -> Stand:
     """Return the stand of the dancer at a time, after all landings before it."""
     balls, yaws = [], []
     for track in feet:

@@ -86,7 +86,7 @@ def heel_of_step(step: StepSettings, haste: float = 0.0) -> Heel:
     return Heel((step.lift_pitch, step.swing_pitch, land), (step.lift_flat, swing), rest)
 
 
-def landing(footing: Footing, foot: FootState, goal: Goal, other: Pose) -> tuple[Array, float]:
+def landing_place(footing: Footing, foot: FootState, goal: Goal, other: Pose) -> tuple[Array, float]:
     """Return where the ball lands and the yaw of the foot (without toe-out). other : the other foot at the landing"""
     step = footing.settings.step
     if len(goal.columns) > 1:
@@ -227,7 +227,7 @@ def heel_up(step: StepSettings, cut: float, heel: Heel, columns: list[int]) -> P
     return float(out[0]), float(max(out[0], out[1])), float(max(out[2], out[3])), float(out[3])
 
 
-def touching(a: Pose, b: Pose, apart: float) -> bool:
+def is_touching(a: Pose, b: Pose, apart: float) -> bool:
     """Whether the middle lines of two standing shoes are less than `apart` metres apart."""
     away = a.middle - b.middle
     if np.hypot(away[0], away[1]) > 2 * HALF_SHOE + apart + SURELY:

@@ -10,7 +10,7 @@ import numpy as np
 
 from dancetutor_cli.dance.clearance import Way, detour
 from dancetutor_cli.dance.context import Context
-from dancetutor_cli.dance.footwork.footfalls import Footfall, Stand, room, stand_at, standing
+from dancetutor_cli.dance.footwork.footfalls import Footfall, Stand, current_stand, room, stand_at
 from dancetutor_cli.dance.footwork.foothold import Pose, legs_crossed
 from dancetutor_cli.dance.footwork.footing import Footing, Proposal, Row
 from dancetutor_cli.dance.footwork.walks import (
@@ -160,7 +160,7 @@ def homeward(plan: Plan, span: tuple[float, float], context: Context) -> tuple[l
     free = max((span[0], *lands, *(press.end + settings.hands.reach_down for press in plan.presses[-2:])))
     if context.bar is not None:
         return None
-    begin = standing(plan.feet, free, plan.turns)
+    begin = current_stand(plan.feet, free, plan.turns)
     whole = 2.0 * np.pi * round(begin.heading / (2.0 * np.pi))
     place = _nearest(places_along(context.squares, plan.lead), begin)
     goal = stand_at(np.array([place, 0.0]), whole, settings)
@@ -212,7 +212,7 @@ def leg_shakes(plan: Plan, mines: Array, context: Context) -> list[tuple[int, Sh
             wanted = chance.random() < loose.share
             for leg in range(legs):
                 foot = (side + leg) % 2 ^ plan.lead
-                shake = _shake(foot, time, standing(plan.feet, time), chance, context)
+                shake = _shake(foot, time, current_stand(plan.feet, time), chance, context)
                 if shake.land > lift - loose.ready:
                     break
                 if wanted and not _moves(plan, shake.lift - loose.between, shake.land + loose.between):

@@ -10,7 +10,7 @@ import numpy as np
 from dancetutor_cli.dance.clearance import SHARES, Way, detour, evenness
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.foot_path import shoe_path
-from dancetutor_cli.dance.footwork.footfalls import Stand, standing
+from dancetutor_cli.dance.footwork.footfalls import Stand, current_stand
 from dancetutor_cli.dance.footwork.footing import SHORTEST_SWING, Footing, Proposal, Row, hold, pair, press, pressed_by
 from dancetutor_cli.dance.footwork.homing import HomeSteps, faces_as_at_home, leg_shakes
 from dancetutor_cli.dance.footwork.mines import avoid_mines
@@ -257,7 +257,7 @@ def _gone_around(feet: tuple[FootTrack, FootTrack], walked: float, context: Cont
 
 
 def _bulge(feet: tuple[FootTrack, FootTrack], side: int, step: Swing, context: Context) -> Bulge:
-    start = standing(feet, step.lift)
+    start = current_stand(feet, step.lift)
     there = shoe_path(feet[1 - side], step.lift + SHARES * (step.land - step.lift), context.settings)
     even = float(evenness(step.land - step.lift, context.settings.step))
     way = Way(start.balls[side], float(start.yaws[side]), np.array(step.target), step.yaw, even=even)

@@ -9,7 +9,7 @@ import numpy as np
 from dancetutor_cli.dance.clearance import evenness
 from dancetutor_cli.dance.context import HALF_PANEL, PANEL
 from dancetutor_cli.dance.footwork.flights import Goals, galloping, hop, leap, take_off_for, tuck_for
-from dancetutor_cli.dance.footwork.foothold import Goal, Pose, around, heel_of_step, heel_up, landing, pose
+from dancetutor_cli.dance.footwork.foothold import Goal, Pose, around, heel_of_step, heel_up, landing_place, pose
 from dancetutor_cli.dance.footwork.footing import Footing, FootState, Proposal, Row, TakeOff, pair
 from dancetutor_cli.dance.footwork.mines import flown_on, landed_early, resumed, stayed_up, wait_for_other_foot
 from dancetutor_cli.dance.plan import Gallop, Hover, Jump, Step, Swing
@@ -88,7 +88,7 @@ def _goals(row: Row, footing: Footing, columns: list[list[int]]) -> Goals:
         ball, yaw = goals.get(side, (panels[columns[side]].mean(axis=0), yaws[side]))
         other = Pose(ball, footing.toes(footing.feet[side], yaw))
         wanted = columns[foot.side], row.play.part[row.index], yaws[foot.side], row.jump_cut, row.following(foot.side)
-        goals[foot.side] = landing(footing, foot, Goal(*wanted), other)
+        goals[foot.side] = landing_place(footing, foot, Goal(*wanted), other)
     return [goals[0], goals[1]]
 
 
@@ -106,7 +106,7 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
     wanted = footing.limited(other.yaw + numbers.yaw_to_normal * (body - other.yaw), body)
     columns = under_the_foot(row, foot)
     goal = Goal(columns, row.play.part[row.index], wanted, row.cut, row.following(side), row.haste)
-    target, yaw = landing(footing, foot, goal, pose(footing, other))
+    target, yaw = landing_place(footing, foot, goal, pose(footing, other))
     if _taps_again(row, foot, columns):
         target, yaw = foot.ball, foot.yaw
     gallop = _gallop(row, side, footing)

@@ -43,7 +43,7 @@ def rounds(normal: float, turn: float, rounded: float) -> float:
     return 360.0 * round(after / 360.0)
 
 
-def passing(turn: float, normal: float, foot: int, seconds: float, step: StepSettings) -> float:
+def passing_turn(turn: float, normal: float, foot: int, seconds: float, step: StepSettings) -> float:
     """Return the turn, degrees, in which one foot passes the other on the side that the form prefers, if it can.
 
     turn : the turn without a form; normal : of the feet before; foot : the foot that steps, 0 left; seconds : time for
@@ -145,7 +145,7 @@ class Facing:
         if alone < 0 or k == 0:
             return turn
         seconds = self._second[j] - self._second[self._steps[k - 1]]
-        return passing(turn, normal, alone, seconds, self.settings.step)
+        return passing_turn(turn, normal, alone, seconds, self.settings.step)
 
     def _side(self, j: int, lead: int) -> float:
         """Return the side, 1 left, to which the foot that steps at row `j` passes ahead of the other one."""

@@ -15,10 +15,10 @@ from dancetutor_cli.dance.footwork.footfalls import (
     Stand,
     WalkRequest,
     WalkSteps,
+    current_stand,
     footsteps,
     room,
     stand_at,
-    standing,
 )
 from dancetutor_cli.dance.footwork.foothold import around, heel_of_step, heel_up
 from dancetutor_cli.dance.footwork.footing import Footing, FootState, Proposal, Row, pair
@@ -54,7 +54,7 @@ def walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropos
     busy = min(plan.first, *(s.lift + walk.settle for t in plan.feet for s in t.moves[:1]))
     if busy < walk.least or (mines < busy).any():
         return None
-    goal = standing(plan.feet, -np.inf)
+    goal = current_stand(plan.feet, -np.inf)
     side = side_of(plan, context)
     heading = (side - 0.5) * np.pi
     away = np.array([_place_off_pad(ground, side, walk.beside), goal.middle[1]])
@@ -73,7 +73,7 @@ def walk_off(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropo
         return None
     ground, settings, walk = context.ground, context.settings, context.settings.walk
     start = max(plan.last, mines.max(initial=-np.inf), *(s.land for t in plan.feet for s in t.moves[-1:])) + walk.pause
-    begin = standing(plan.feet, np.inf, plan.turns)
+    begin = current_stand(plan.feet, np.inf, plan.turns)
     whole = 2 * np.pi * round(begin.heading / (2 * np.pi))
     found = []
     came = side_of(plan, context)
@@ -119,7 +119,7 @@ def walk_over(plan: Plan, wait: tuple[float, float], gait: str, context: Context
     if len(places_along(context.squares, plan.lead)) == 1:
         return None
     start, ready = wait
-    begin = standing(plan.feet, start, plan.turns)
+    begin = current_stand(plan.feet, start, plan.turns)
     following = [next_step(track, ready) for track in plan.feet]
     targets = np.array([s.target for s in following if s is not None and not isinstance(s, Hover)])
     if len(targets) < len(following):

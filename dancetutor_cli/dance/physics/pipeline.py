@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dancetutor_cli.chart.timing import heard
+from dancetutor_cli.chart.timing import heard_second
 from dancetutor_cli.dance.motion import Distances, Motion
 from dancetutor_cli.dance.physics.arms import clear_arms, push_arms_out
 from dancetutor_cli.dance.physics.blend import Blend, mean_distances, mean_poses
@@ -86,8 +86,8 @@ def parse_ragdoll_options(push: Sequence[str], trip: Sequence[float], rate: floa
     """
     pushes = map(parse_push, push)
     return RagdollOptions(
-        pushes=tuple(replace(one, second=heard(one.second, rate)) for one in pushes),
-        stumbles=tuple(Stumble(heard(second, rate)) for second in trip),
+        pushes=tuple(replace(one, second=heard_second(one.second, rate)) for one in pushes),
+        stumbles=tuple(Stumble(heard_second(second, rate)) for second in trip),
     )
 
 

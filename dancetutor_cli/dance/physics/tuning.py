@@ -70,7 +70,7 @@ class Tuning:
         return cls(values[0], values[1], density) if all(0 < v < 1e5 for v in values) else None
 
 
-def tuned(body: Skeleton, neutral: Style) -> Tuning:
+def search_tuning(body: Skeleton, neutral: Style) -> Tuning:
     """Search the tuning. body : named as the rig's; raises DancetutorError if the ragdoll follows with no springs at
     all.
     """

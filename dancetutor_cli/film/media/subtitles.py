@@ -14,7 +14,7 @@ from dancetutor_cli.feet.play import CROSSED, FULL, crossover_spans, spans
 from dancetutor_cli.feet.solver.techniques import HALF_TURNS, moves_and_turns
 from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.notes import Cue
-from dancetutor_cli.film.words import HOLD, IMPLIED_BY_BRACKET, PanelNames, filled, move_words
+from dancetutor_cli.film.words import HOLD, IMPLIED_BY_BRACKET, PanelNames, fill_words, move_words
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.languages import Language, load_language
 from dancetutor_cli.run.reading import config_path
@@ -75,7 +75,7 @@ def _moments(play: Play, words: Mapping[str, str], view: PanelNames) -> Iterator
         for name in named.intersection(names) - (IMPLIED_BY_BRACKET if "bracket" in names else set()):
             second = float(play.rows.second[row])
             who = () if "{" in words[name] else _limb_names(play, row, view.language)
-            for text in filled(words[name], name, (play, row), view):
+            for text in fill_words(words[name], name, (play, row), view):
                 yield Cue(second, second, text, who, name)
 
 

@@ -15,7 +15,7 @@ from dancetutor_cli.film.notes import Callout
 from dancetutor_cli.film.overlay.blit import Box, Sprite, blit, rectangle
 from dancetutor_cli.film.overlay.captions import SOFT, WHITE, box_of
 from dancetutor_cli.film.overlay.sprites import FLAG_EDGE, WordStyle, flag, flag_height
-from dancetutor_cli.film.overlay.text import Typeface, fitted, wrapped
+from dancetutor_cli.film.overlay.text import Typeface, fit_text, wrap_words
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.run.languages import Language
 from dancetutor_cli.run.schema import RGB
@@ -42,7 +42,7 @@ class Runs:
         self.labels = [flag([text], 19 * scale, SOFT, face) for text in texts]
         counts = range(1, max(one.count for one in clock.passes) + 1)
         room, small = count[3] - count[1], min(20 * scale, 0.2 * (count[3] - count[1]))
-        (label,), small = fitted(self._words["count-in"], small, 0.9 * (count[2] - count[0]), face, most=1)
+        (label,), small = fit_text(self._words["count-in"], small, 0.9 * (count[2] - count[0]), face, most=1)
         self.counted = face.sprite(label, small, SOFT, weight=small / 80, shadow=small / 14)
         big = min(150 * scale, 0.8 * (room - self.counted.shape[0]))
         self.numbers = {n: face.sprite(str(n), big, WHITE, weight=big / 50, shadow=big / 30) for n in counts}
@@ -106,11 +106,11 @@ def _phrases(
             return lines, fits
     for ends in (",", ",:"):
         for share in SHARES:
-            lines = wrapped(_parts(text, ends), share * size, width, face)
+            lines = wrap_words(_parts(text, ends), share * size, width, face)
             low = len(lines) == 1 or flag_height(len(lines), share * size) <= height
             if low and max(face.width(line, share * size) for line in lines) <= width:
                 return lines, float(share * size)
-    return fitted(text, size, width, face, 3)
+    return fit_text(text, size, width, face, 3)
 
 
 def _two_lines(text: str, size: float, width: float, face: Typeface) -> tuple[list[str], float]:
@@ -120,10 +120,10 @@ def _two_lines(text: str, size: float, width: float, face: Typeface) -> tuple[li
     """
     for ends in (",", ",:"):
         for share in SHARES:
-            lines = wrapped(_parts(text, ends), share * size, width, face)
+            lines = wrap_words(_parts(text, ends), share * size, width, face)
             if len(lines) <= 2 and max(face.width(line, share * size) for line in lines) <= width:
                 return lines, float(share * size)
-    return fitted(text, size, width, face, 2)
+    return fit_text(text, size, width, face, 2)
 
 
 def _parts(text: str, ends: str) -> list[str]:

@@ -23,7 +23,7 @@ from dancetutor_cli.film.words import (
     PanelNames,
     Phrase,
     crossing_phrase,
-    filled,
+    fill_words,
     plain,
     short_words,
     stepped_phrase,
@@ -274,7 +274,7 @@ def _moves(pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[in
                 limbs = play.limb[row].tolist()
                 yield _Move(ticks[row], ticks[row], stepped_phrase(words[name], name, limbs, style.language))
                 continue
-            for text in filled(words[name], name, (play, row), PanelNames(pad, style.turned, style.language)):
+            for text in fill_words(words[name], name, (play, row), PanelNames(pad, style.turned, style.language)):
                 yield _Move(ticks[row], ticks[row], plain(text + reason))
 
 

@@ -17,7 +17,7 @@ from dancetutor_cli.film.layout import PixelBox, lowered
 from dancetutor_cli.film.overlay.blit import Box, Sprite, blit
 from dancetutor_cli.film.overlay.captions import SOFT, WHITE, box_of, plate
 from dancetutor_cli.film.overlay.sprites import WordStyle
-from dancetutor_cli.film.overlay.text import LONGEST, Typeface, clean, fitted, in_lines
+from dancetutor_cli.film.overlay.text import LONGEST, Typeface, clean, fit_text, in_lines
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.run.languages import Language
 
@@ -206,7 +206,7 @@ def _fits(
     for least, most in ways:
         if least * whole > most * width:  # the text cannot fit, and a try with 1000 letters would be slow
             continue
-        lines, fits = fitted(text, size, width, face, most)
+        lines, fits = fit_text(text, size, width, face, most)
         if fits >= least * size:
             return lines, fits
     least, most = ways[-1]

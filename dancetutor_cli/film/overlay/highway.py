@@ -16,7 +16,7 @@ from dancetutor_cli.film.notes import QUANTISATIONS, BeatLines, Callout, NoteTra
 from dancetutor_cli.film.overlay import marks, sprites
 from dancetutor_cli.film.overlay.blit import Ink, Run, Sprite, blit, rectangle, strip
 from dancetutor_cli.film.overlay.marks import EDGE, NUMBER_EDGE, NUMBER_OFF, HighwayGeometry, Marks
-from dancetutor_cli.film.overlay.text import Typeface, fitted
+from dancetutor_cli.film.overlay.text import Typeface, fit_text
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.film.scroll import Scroll
 from dancetutor_cli.run.schema import RGB
@@ -168,7 +168,7 @@ class Highway:
         size = max(0.21 * self.geometry.lane, NUMBER_SHARE * (self.geometry.box[3] - self.geometry.box[1]))
         left, top, _, bottom = self.geometry.box
         room = self.geometry.left - NUMBER_OFF * self.geometry.lane - left - NUMBER_EDGE * (bottom - top)
-        (text,), size = fitted(str(measure), size, room, self.face, most=1)
+        (text,), size = fit_text(str(measure), size, room, self.face, most=1)
         return self.face.sprite(text, size, (190, 196, 220))
 
     def _draw_callouts(self, frame: Frame, now: _Now) -> None:
@@ -210,7 +210,7 @@ class Highway:
         geometry = self.geometry
         gap = min(abs(geometry.receptor - edge) for edge in geometry.box[1::2]) - 0.5 * self.size
         size = max(FLAG_LEAST, min(0.4 * gap, 0.33 * geometry.lane))
-        (line,), size = fitted(geometry.facing, size, geometry.lane * len(geometry.directions) - 5, self.face, most=1)
+        (line,), size = fit_text(geometry.facing, size, geometry.lane * len(geometry.directions) - 5, self.face, most=1)
         return self.face.sprite(line, size, self.style.callout["move"], weight=0.012 * size)
 
     def _draw_receptors(self, frame: Frame, second: float, beat: float) -> None:

@@ -17,7 +17,7 @@ from dancetutor_cli.film.notes import Callout, NoteTrack
 from dancetutor_cli.film.overlay import sprites
 from dancetutor_cli.film.overlay.blit import Sprite, blit
 from dancetutor_cli.film.overlay.sprites import FLAG_EDGE
-from dancetutor_cli.film.overlay.text import Typeface, fitted, narrowest
+from dancetutor_cli.film.overlay.text import Typeface, fit_text, narrowest
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.film.words import short_words
 
@@ -353,7 +353,7 @@ def lay_out_tag(tag: str, size: float, least: float, room: float, face: Typeface
     """
     enough = NEAR * max(FEWER * least, min(least, LEAST))
     for most in range(LINES, MOST_LINES + 1):
-        lines, fits = fitted(tag, size, room - FLAG_EDGE * size - LABEL, face, most)
+        lines, fits = fit_text(tag, size, room - FLAG_EDGE * size - LABEL, face, most)
         if fits >= enough:
             break
     return lines, fits

@@ -258,7 +258,7 @@ def clean(text: str) -> str:
     return " ".join(kept.split())
 
 
-def wrapped(words: list[str], size: float, width: float, face: Typeface) -> list[str]:
+def wrap_words(words: list[str], size: float, width: float, face: Typeface) -> list[str]:
     """Lay words in lines of at most `width` pixels; a wider word has a line of its own."""
     return _laid([words[0], *(f" {word}" for word in words[1:])], size, width, face)
 
@@ -324,7 +324,7 @@ def _after(text: str, lines: list[str]) -> str:
     return rest
 
 
-def fitted(text: str, size: float, width: float, face: Typeface, most: int = 4) -> tuple[list[str], float]:
+def fit_text(text: str, size: float, width: float, face: Typeface, most: int = 4) -> tuple[list[str], float]:
     """Return a text in at most `most` lines of at most `width` pixels, and the size that makes it fit without a cut.
 
     The text is wrapped before it is made smaller, and its lines are about equally long.

@@ -12,7 +12,16 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.bake import mines_of
 from dancetutor_cli.dance.motion import Motion, shifted
-from dancetutor_cli.dance.performance import as_heard, pad_of, perform, place_on, play_of_all, playable, pooled, solve
+from dancetutor_cli.dance.performance import (
+    as_heard,
+    pad_of,
+    perform,
+    piece_runner,
+    place_on,
+    play_of_all,
+    playable,
+    solve,
+)
 from dancetutor_cli.dance.quality.contact import feet_on_mines, mine_messages
 from dancetutor_cli.film.notes import OnMine
 from dancetutor_cli.film.work.request import FilmRequest, FilmSubject
@@ -125,7 +134,7 @@ def film_dance(request: FilmRequest, subject: FilmSubject) -> FilmDance:
 def _cut(request: FilmRequest, performance: Performance, clock: Clock) -> tuple[Motion, ...]:
     """Return the part of a performance that the film shows, with each dancer at her place on the common pad."""
     wanted = replace(clock.cut_at(performance.rate), walks_off=request.background)
-    done = performance.motions(wanted, pooled())
+    done = performance.motions(wanted, piece_runner())
     return tuple(shifted(one.motion, *who.place) for one, who in zip(done, performance.dancers, strict=True))
 
 

@@ -26,7 +26,7 @@ from dancetutor_cli.film.work.segments import (
     write_plan,
 )
 from dancetutor_cli.run.errors import DancetutorError, FileError
-from dancetutor_cli.run.files import encoded, place_of, write_atomic
+from dancetutor_cli.run.files import encode_json, place_of, write_atomic
 from dancetutor_cli.run.pictures import picture_bytes
 
 if TYPE_CHECKING:
@@ -305,7 +305,7 @@ def write_pose_index(folder: Path, song: Song, chart: Chart, plan: FilmPlan) -> 
             }
         )
     data = {"schema": 1, "path": song.path.name, "chart": chart.label, "poses": entries}
-    write_atomic(folder / INDEX, encoded(json.dumps(data, ensure_ascii=False, indent=1) + "\n"))
+    write_atomic(folder / INDEX, encode_json(json.dumps(data, ensure_ascii=False, indent=1) + "\n"))
 
 
 def write_poster(path: Path, film: Film) -> None:

@@ -24,7 +24,7 @@ from dancetutor_cli.film.overlay.captions import SongShape
 from dancetutor_cli.film.overlay.diagram import step_rows
 from dancetutor_cli.film.overlay.header import title_warnings, words_of
 from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
-from dancetutor_cli.film.plan import FilmPlan, turned
+from dancetutor_cli.film.plan import FilmPlan, faces_viewer
 from dancetutor_cli.film.scene.scene import Scene
 from dancetutor_cli.film.scene.visibility import feet_hidden
 from dancetutor_cli.film.scroll import ScrollSegments, SpeedSegments, reading_bpm, segments_of, speeds_of
@@ -158,13 +158,13 @@ def _mines_of_each(dance: FilmDance, style: CallStyle, scrolls: ScrollSegments) 
 
 def _calls(look: FilmLook) -> CallStyle:
     ahead, language = look.ahead or parse_ahead(highway_style().callout_ahead), load_language(look.language)
-    return CallStyle(callout_words(language), ahead, look.findings, turned(look), language)
+    return CallStyle(callout_words(language), ahead, look.findings, faces_viewer(look), language)
 
 
 def _cues(dance: FilmDance, look: FilmLook) -> list[Cue]:
     """Return the moves for subtitles; for two dancers with the player's number."""
     language = load_language(look.language)
-    words, facing = subtitle_words(language), turned(look)
+    words, facing = subtitle_words(language), faces_viewer(look)
     cues = [
         replace(cue, text=f"P{one.chart.player}: {cue.text}") if len(dance.solved) > 1 else cue
         for one, play in zip(dance.solved, dance.plays, strict=True)

@@ -24,7 +24,7 @@ from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.film.media.encoder import PICTURES, Encoding, encode_segment
 from dancetutor_cli.run.errors import FileError
-from dancetutor_cli.run.files import encoded, write_atomic
+from dancetutor_cli.run.files import encode_json, write_atomic
 from dancetutor_cli.run.pool import Report, Task
 from dancetutor_cli.run.reading import read_json
 from dancetutor_cli.run.trust import exclude, kept_folder, results_folder
@@ -101,7 +101,7 @@ class FilmRecords:
         path = self._path(output)
         with suppress(OSError, FileError):
             path.parent.mkdir(mode=0o700, exist_ok=True)
-            write_atomic(path, encoded(json.dumps(data, ensure_ascii=False, indent=1) + "\n"))
+            write_atomic(path, encode_json(json.dumps(data, ensure_ascii=False, indent=1) + "\n"))
 
     def _path(self, output: Path) -> Path:
         assert self._folder is not None

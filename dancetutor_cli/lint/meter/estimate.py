@@ -38,13 +38,13 @@ def size(steps_type: str, label: tuple[int, str], ask: Ask, rate: float = 1.0) -
     model = model_for(steps_type)
     if model is None:
         return None
-    one = sized(model, ask(model.features, 1.0), label)
+    one = measure_chart(model, ask(model.features, 1.0), label)
     if rate == 1.0:
         return one
     return replace(one, played=model.terms(ask(model.features, rate)), rate=rate)
 
 
-def sized(model: MeterModel, values: Sequence[float], label: tuple[int, str]) -> MeteredChart:
+def measure_chart(model: MeterModel, values: Sequence[float], label: tuple[int, str]) -> MeteredChart:
     """Return a chart's meters on every scale at rate 1. values : the values of `model.features`"""
     terms = model.terms(values)
     on = {scale.name: scale.meter(of) for scale, of in zip(model.scales, terms, strict=True)}

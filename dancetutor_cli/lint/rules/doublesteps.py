@@ -106,7 +106,7 @@ class Doublestep(MoveRule):
 
 def _at_a_pause(subject: ChartSubject, row: int) -> bool:
     """Whether a quicker group begins with this step, or the next step comes so late that the repeat can be there."""
-    from dancetutor_cli.lint.other_foot import exchanged_is_uncrossed, standing
+    from dancetutor_cli.lint.other_foot import exchanged_is_uncrossed, panels_before
 
     rows = subject.step_rows
     at = int(rows.searchsorted(row))
@@ -116,7 +116,7 @@ def _at_a_pause(subject: ChartSubject, row: int) -> bool:
     if pause >= _LONG - EPSILON and pause >= _LONGER * after:
         return True
     waits = after >= _LONG - EPSILON and after >= _LONGER * pause
-    return waits and exchanged_is_uncrossed(subject, rows[at : at + 1], standing(subject, row))
+    return waits and exchanged_is_uncrossed(subject, rows[at : at + 1], panels_before(subject, row))
 
 
 def _round_the_centre(subject: ChartSubject, row: int) -> bool:
@@ -130,7 +130,7 @@ def _round_the_centre(subject: ChartSubject, row: int) -> bool:
 
 def _crosses_to_jump(subject: ChartSubject, row: int, quick: float) -> bool:
     """Whether alternating feet cross only once, by less than 180 degrees, before two panels at once uncross them."""
-    from dancetutor_cli.lint.other_foot import exchanged_facings, segment, standing
+    from dancetutor_cli.lint.other_foot import exchanged_facings, panels_before, segment
 
     assert subject.facts is not None
     rows = subject.step_rows
@@ -140,7 +140,7 @@ def _crosses_to_jump(subject: ChartSubject, row: int, quick: float) -> bool:
         return False
     if (subject.facts.down[rows[at : last + 1]] != 1).any() or subject.pause(row) < _CROSSED_RATHER:
         return False
-    facings = exchanged_facings(subject, rows[at : last + 1], standing(subject, row))
+    facings = exchanged_facings(subject, rows[at : last + 1], panels_before(subject, row))
     crossed = [abs(one) > 90 + EPSILON for one in facings]
     return max(map(abs, facings)) < 180 and sum(one != two for one, two in pairwise([False, *crossed])) == 1
 
@@ -161,7 +161,7 @@ def any_foot_near(subject: ChartSubject, row: int) -> bool:
 
 def _has_better_start(subject: ChartSubject, row: int, quick: float) -> bool:
     """Whether players prefer another way: the other foot first before or after the step, or a short crossover."""
-    from dancetutor_cli.lint.other_foot import exchanged_facings, exchanged_is_uncrossed, segment, standing
+    from dancetutor_cli.lint.other_foot import exchanged_facings, exchanged_is_uncrossed, panels_before, segment
 
     assert subject.play is not None and subject.facts is not None
     rows, pause = subject.step_rows, subject.pause(row)
@@ -171,11 +171,11 @@ def _has_better_start(subject: ChartSubject, row: int, quick: float) -> bool:
     before, last = segment(subject, at - 1, quick)[0], segment(subject, at, quick, forwards_only=True)[1]
     foot = int(subject.play.limb[row].max())
     if _own_side(subject, int(rows[before]), exchanged=True) and exchanged_is_uncrossed(
-        subject, rows[before:at], standing(subject, int(rows[before]))
+        subject, rows[before:at], panels_before(subject, int(rows[before]))
     ):
         return True
     ends = last + 1 < len(rows)
-    stand = standing(subject, row)
+    stand = panels_before(subject, row)
     if ends and _own_side(subject, int(rows[last + 1])) and exchanged_is_uncrossed(subject, rows[at : last + 1], stand):
         return True
     facings = exchanged_facings(subject, rows[at : last + 1], stand)

@@ -182,7 +182,7 @@ def _dense(subject: ChartSubject, row: int) -> tuple[int, str]:
 
 def _other_hold_ends(subject: ChartSubject, before: int, row: int) -> bool:
     """Whether the other foot's hold ends between two single steps, and it can take the second step uncrossed."""
-    from dancetutor_cli.lint.other_foot import standing
+    from dancetutor_cli.lint.other_foot import panels_before
 
     play, pad = subject.play, subject.pad
     if play is None or pad is None or any((play.limb[one] >= 0).sum() != 1 for one in (before, row)):
@@ -190,7 +190,7 @@ def _other_hold_ends(subject: ChartSubject, before: int, row: int) -> bool:
     limb, first, second = int(play.limb[row].max()), int(play.limb[before].argmax()), int(play.limb[row].argmax())
     ends = play.rows.hold_end[:before].max(axis=0, initial=0)
     ending = (ends > play.rows.tick[before]) & (ends <= play.rows.tick[row])
-    stood = standing(subject, before)
+    stood = panels_before(subject, before)
     if limb > 1 or stood[1 - limb] < 0 or not ending[stood[1 - limb]]:
         return False
     x, _ = (pad.panels[second] - pad.panels[first]) * (1 if limb == 0 else -1)
@@ -201,7 +201,7 @@ def _can_tap_neighbour(subject: ChartSubject, before: int, row: int) -> bool:
     """Whether the other foot holds a panel and can also tap one of two single steps beside this panel, uncrossed."""
     import numpy as np
 
-    from dancetutor_cli.lint.other_foot import standing
+    from dancetutor_cli.lint.other_foot import panels_before
 
     play, pad = subject.play, subject.pad
     if play is None or pad is None or subject.chart.meter < _NEIGHBOUR_TAP_METER:
@@ -209,7 +209,7 @@ def _can_tap_neighbour(subject: ChartSubject, before: int, row: int) -> bool:
     if any((play.limb[one] >= 0).sum() != 1 for one in (before, row)):
         return False
     limb, columns = int(play.limb[row].max()), [int(play.limb[one].argmax()) for one in (before, row)]
-    if limb > 1 or (held := standing(subject, before)[1 - limb]) < 0:
+    if limb > 1 or (held := panels_before(subject, before)[1 - limb]) < 0:
         return False
     if play.rows.hold_end[:before, held].max(initial=-1) < play.rows.tick[row]:
         return False
@@ -225,7 +225,7 @@ def _free_foot_takes_it(subject: ChartSubject, row: int, max_speed: float) -> bo
     """Whether two single steps are a flam for two feet, in which the other foot has time to take the first step."""
     import numpy as np
 
-    from dancetutor_cli.lint.other_foot import standing
+    from dancetutor_cli.lint.other_foot import panels_before
 
     play, pad, rows = subject.play, subject.pad, subject.step_rows
     at = int(rows.searchsorted(row))
@@ -237,7 +237,7 @@ def _free_foot_takes_it(subject: ChartSubject, row: int, max_speed: float) -> bo
     if any((play.limb[one] >= 0).sum() != 1 or subject.facts.down[one] != 1 for one in (before, row)):
         return False
     limb, first, second = int(play.limb[row].max()), int(play.limb[before].argmax()), int(play.limb[row].argmax())
-    if limb > 1 or int(play.limb[before, first]) != limb or min(stood := standing(subject, before)) < 0:
+    if limb > 1 or int(play.limb[before, first]) != limb or min(stood := panels_before(subject, before)) < 0:
         return False
     stepped = subject.facts.presses.of(1 - limb).row
     since = int(stepped.searchsorted(before)) - 1

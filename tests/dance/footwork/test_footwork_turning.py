@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from bake_plays import context
 
-from dancetutor_cli.dance.clearance import swung
+from dancetutor_cli.dance.clearance import turn_share
 from dancetutor_cli.dance.foot_path import FootPath, foot_path
 from dancetutor_cli.dance.footwork.flights import Flight, flown
 from dancetutor_cli.dance.footwork.footing import FREE_WINDOW, Footing
@@ -37,7 +37,7 @@ def test_a_body_that_turns_is_little_ahead_of_the_foot_that_turns_with_it(
     begin = turn_start((10.0, duration), 10.0 - flight, far, SETTINGS.step)
     times = np.linspace(10.0 - duration, 10.0, 200)
     body = far * smooth((times - begin) / (10.0 - begin))
-    foot = far * swung((times - 10.0 + flight) / flight, SETTINGS.step)
+    foot = far * turn_share((times - 10.0 + flight) / flight, SETTINGS.step)
     assert (body - foot).max() <= SETTINGS.step.turn_ahead + 3.0
     assert begin >= 10.0 - duration
 

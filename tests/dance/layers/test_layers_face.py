@@ -7,7 +7,7 @@ import pytest
 from bake_mirror import mirrored_play
 from bake_plays import Event, L, R, chart, pad, play
 
-from dancetutor_cli.dance.bake import bake, planned
+from dancetutor_cli.dance.bake import bake, plan_dance
 from dancetutor_cli.dance.face import peeks_at
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig import quaternion as quat
@@ -88,9 +88,9 @@ def test_the_mirror_image_has_the_mirrored_face(motion: Motion) -> None:
 def test_a_step_soon_after_a_jump_leaves_no_time_for_a_look() -> None:
     jumps: list[Event] = [(3.0 + 0.25 * k, {0: L, 3: R}) for k in range(24)]
     alone = [*jumps[:12], (jumps[12][0], {1: L}), *jumps[13:]]
-    plan, context = planned(chart().timing, play(alone), pad())
+    plan, context = plan_dance(chart().timing, play(alone), pad())
     at = np.arange(4.0, 8.0, 1 / 60)
     assert not peeks_at(plan, np.ones(len(at)), at, context).share.any()
     slow: list[Event] = [(3.0 + 2.0 * k, {(0, 3)[k % 2]: (L, R)[k % 2]}) for k in range(6)]
-    plan, context = planned(chart().timing, play(slow), pad())
+    plan, context = plan_dance(chart().timing, play(slow), pad())
     assert peeks_at(plan, np.ones(len(at)), at, context).share.max() > 0.9

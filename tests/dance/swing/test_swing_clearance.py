@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from bake_plays import context
 
-from dancetutor_cli.dance.clearance import SHARES, Way, bend, detour, lag, over, swung, travelled
+from dancetutor_cli.dance.clearance import SHARES, Way, bend, detour, lag, over, travel_share, turn_share
 from dancetutor_cli.dance.context import HALF_PANEL, Spot, ball_of, middle_of
 from dancetutor_cli.dance.footwork.foothold import pose, resolve_overlap
 from dancetutor_cli.dance.footwork.footing import Footing
@@ -57,14 +57,14 @@ def test_a_footswitch_leaves_both_shoes_their_room(yaw: float) -> None:
 def test_a_swing_goes_around_the_standing_shoe(turned: float | None) -> None:
     start, end, other, yaw = np.array([0.2, -0.25]), np.array([0.15, 0.3]), np.array([0.17, 0.02]), 0.1
     to, pivot = yaw if turned is None else turned, ball_of(other, yaw)
-    now = yaw + swung(SHARES, STEP) * (to - yaw)
+    now = yaw + turn_share(SHARES, STEP) * (to - yaw)
     balls = ball_of(start, 0.0), ball_of(end, 0.2)
     bulge = detour(Way(balls[0], 0.0, balls[1], 0.2), pivot, now, STEP, 1.0)
     least = np.inf
     for s in np.linspace(0.05, 0.95, 60):
-        share, aim = float(travelled(s, STEP)), yaw + float(swung(s, STEP)) * (to - yaw)
+        share, aim = float(travel_share(s, STEP)), yaw + float(turn_share(s, STEP)) * (to - yaw)
         ball = along(balls[0], balls[1], share, bulge)
-        own = float(swung(s, STEP)) * 0.2
+        own = float(turn_share(s, STEP)) * 0.2
         shoes = line_points(middle_of(ball, own), own), line_points(middle_of(pivot, aim), aim)
         least = min(least, gap(*shoes))
     assert least >= APART - 0.004
@@ -86,13 +86,13 @@ def test_a_swing_past_a_close_shoe_goes_aside_first_and_not_far(scene: str) -> N
     yaws, others = np.radians([before, after]), np.radians([still, turned])
     outward = 1.0 if scene != "to beside it" else -1.0
     way = Way(np.array(start), yaws[0], np.array(end), yaws[1], (np.radians(hips[0]), np.radians(hips[1])))
-    there = np.tile(other, (len(SHARES), 1)), others[0] + swung(SHARES, STEP) * (others[1] - others[0])
+    there = np.tile(other, (len(SHARES), 1)), others[0] + turn_share(SHARES, STEP) * (others[1] - others[0])
     bulge = detour(way, *there, STEP, outward)
     assert np.hypot(bulge.x, bulge.z) < 0.4
     gaps = []
     for s in np.linspace(0.05, 0.95, 90):
-        own, its = (a + float(swung(s, STEP)) * (b - a) for a, b in (yaws, others))
-        ball = along(np.array(start), np.array(end), float(travelled(s, STEP)), bulge)
+        own, its = (a + float(turn_share(s, STEP)) * (b - a) for a, b in (yaws, others))
+        ball = along(np.array(start), np.array(end), float(travel_share(s, STEP)), bulge)
         gaps.append(gap(line_points(middle_of(ball, own), own), line_points(middle_of(np.array(other), its), its)))
     assert min(gaps) >= 2 * FOOT_RADIUS
 
@@ -127,7 +127,7 @@ def test_a_foot_that_turns_on_its_place_goes_around_the_other_shoe() -> None:
     def least(aside: Bulge) -> float:
         gaps = []
         for s in SHARES:
-            e, yaw = float(travelled(s, STEP)), -turn + float(swung(s, STEP)) * 2 * turn
+            e, yaw = float(travel_share(s, STEP)), -turn + float(turn_share(s, STEP)) * 2 * turn
             ball = along(place, place, e, aside)
             shoes = line_points(middle_of(ball, yaw), yaw), line_points(middle_of(other, aim), aim)
             gaps.append(gap(*shoes))

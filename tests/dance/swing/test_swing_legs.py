@@ -7,7 +7,7 @@ import pytest
 from bake_plays import Event, L, R, chart, pad, play, stream
 
 from dancetutor_cli.dance.bake import bake
-from dancetutor_cli.dance.clearance import SHARES, Way, detour, travelled, wrung
+from dancetutor_cli.dance.clearance import SHARES, Way, detour, travel_share, wrung
 from dancetutor_cli.dance.ik.knees import Hung, part_knees
 from dancetutor_cli.dance.quality.figures import body_of
 from dancetutor_cli.dance.quality.posture import limb_depths
@@ -46,7 +46,7 @@ def test_a_way_leads_around_on_the_side_of_the_hips() -> None:
     for turn in (-170.0, 170.0):
         way = Way(start, 0.0, end, np.radians(turn), (0.0, np.radians(turn)))
         aside = np.array(detour(way, other, 0.0, SETTINGS.step, -1.0)[:2])
-        share = travelled(SHARES, SETTINGS.step)
+        share = travel_share(SHARES, SETTINGS.step)
         line = -(start + share[:, None] * (end - start) + np.sin(np.pi * share)[:, None] * aside - other)
         angle = np.degrees(np.unwrap(np.arctan2(-line[:, 1], line[:, 0])))
         assert np.sign(angle[-1] - angle[0]) == np.sign(turn) and abs(angle[-1] - angle[0]) > 100.0

@@ -18,7 +18,7 @@ from dancetutor_cli.film.overlay import text
 from dancetutor_cli.film.overlay.captions import Legend, LegendWords
 from dancetutor_cli.film.overlay.header import Header, Words, WordsRoom
 from dancetutor_cli.film.overlay.sprites import WordStyle, highway_style
-from dancetutor_cli.film.overlay.text import Typeface, clean, fitted, in_lines, parts_of, system_fonts, wrapped
+from dancetutor_cli.film.overlay.text import Typeface, clean, fit_text, in_lines, parts_of, system_fonts, wrap_words
 from dancetutor_cli.run.languages import load_language
 from dancetutor_cli.run.reading import config_names
 
@@ -69,9 +69,9 @@ def test_letters_the_built_in_font_lacks_come_from_the_system(fonts: list[str]) 
 def test_labels_wrap_before_they_become_small() -> None:
     face = Typeface()
     width = face.width("full crossover", 14)
-    assert wrapped(["full", "crossover"], 14, width + 1, face) == ["full crossover"]
-    assert wrapped(["full", "crossover"], 14, 0.7 * width, face) == ["full", "crossover"]
-    lines, size = fitted("full crossover", 14, 0.75 * width, face)
+    assert wrap_words(["full", "crossover"], 14, width + 1, face) == ["full crossover"]
+    assert wrap_words(["full", "crossover"], 14, 0.7 * width, face) == ["full", "crossover"]
+    lines, size = fit_text("full crossover", 14, 0.75 * width, face)
     assert lines == ["full", "crossover"] and size == 14
 
 
@@ -79,7 +79,7 @@ def test_labels_wrap_before_they_become_small() -> None:
 def test_labels_are_never_cut(room: int) -> None:
     face = Typeface()
     said = "heel down-right, toe centre, footswitch ×12"
-    lines, size = fitted(said, 16, room, face)
+    lines, size = fit_text(said, 16, room, face)
     assert " ".join(lines) == said and len(lines) <= 4
     assert max(face.width(line, size) for line in lines) <= room
 
@@ -155,7 +155,7 @@ def test_lines_are_about_as_long_as_each_other() -> None:
     face = Typeface()
     text = "La Troupe de Mozart, L'Opéra Rock"
     width = face.width("La Troupe de Mozart, L'Opéra", 20) + 1
-    assert fitted(text, 20, width, face, 2) == (["La Troupe de Mozart,", "L'Opéra Rock"], 20)
+    assert fit_text(text, 20, width, face, 2) == (["La Troupe de Mozart,", "L'Opéra Rock"], 20)
 
 
 def test_what_does_not_fit_ends_at_a_word(written: list[str]) -> None:

@@ -166,7 +166,7 @@ def has_ground(tiles: GroundTiles) -> NDArray[np.bool_]:
     return tiles.low[..., 0] <= tiles.high[..., 0]
 
 
-def shaded(tiles: GroundTiles, light: Array, part: Array, spread: float) -> NDArray[np.bool_]:
+def shaded_tiles(tiles: GroundTiles, light: Array, part: Array, spread: float) -> NDArray[np.bool_]:
     """Return whether the shadow may fall on each tile (t, u). light : `film.scene.shared.light_matrix`
 
     part : `film.scene.shared.within`; spread : distance of the shadow's taps, as a share of the map
@@ -183,7 +183,7 @@ def shaded(tiles: GroundTiles, light: Array, part: Array, spread: float) -> NDAr
     return out
 
 
-def trodden(tiles: GroundTiles, feet: Array, far: float) -> NDArray[np.bool_]:
+def foot_tiles(tiles: GroundTiles, feet: Array, far: float) -> NDArray[np.bool_]:
     """Return whether the marks of a foot may fall on each tile.
 
     feet : `shared.feet_on_floor`; far : reach from the line between heel and toe, metres, without the size of pixels

@@ -25,14 +25,14 @@ from dancetutor_cli.film.scene.gl.framebuffers import (
     Patches,
     StandingTarget,
     Target,
+    foot_tiles,
     is_lit,
     pyramid,
     rectangles,
     refill,
-    shaded,
+    shaded_tiles,
     smooth,
     texture,
-    trodden,
 )
 from dancetutor_cli.film.scene.gl.programs import (
     Program,
@@ -207,10 +207,10 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         feet = feet_on_floor(self._scene, state)
         cast, part = dancer.cast, within(dancer.light, dancer.places)
         spread = float(max(1, round(look.light.shadow_soft * cast.scale / 2)) * 1.35 / self._map.size[0])
-        under = trodden(standing.tiles, feet, _foot_reach(look.light)) & standing.has_ground
+        under = foot_tiles(standing.tiles, feet, _foot_reach(look.light)) & standing.has_ground
         touched = is_lit(standing.tiles, lit)
         if cast.scale:
-            touched |= shaded(standing.tiles, dancer.light, part, spread)
+            touched |= shaded_tiles(standing.tiles, dancer.light, part, spread)
         program: Program = self._program_cache.program("patches.vert", "ground.frag")
         units = {"standing": standing.colour, "ground": standing.ground, "panels": standing.panels}
         units |= {"lights": self._lights}
