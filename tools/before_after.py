@@ -184,7 +184,7 @@ def _hips(motion: Motion) -> Curve:
 
 def _firm(body: Body) -> Array:
     """The seconds at which a foot stands, as in the frames before and after: there balance and force are measured."""
-    standing = np.asarray(body.standing.any(axis=1))
+    standing = np.asarray(body.is_standing.any(axis=1))
     return body.times[1:-1][standing[1:-1] & standing[2:] & standing[:-2]]
 
 
@@ -205,7 +205,7 @@ def largest(seconds: Array, values: Array, moments: Moments) -> Array:
 
 def figures(motion: Motion) -> list[str]:
     """A line for each goal that a motion does not meet."""
-    missed = [one for one in report(motion).figures if one.met is False]
+    missed = [one for one in report(motion).figures if one.is_met is False]
     return [f"{one.name} {one.value:.4g} {one.unit}, goal {one.goal:g}" for one in missed] or ["every goal is met"]
 
 

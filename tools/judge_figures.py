@@ -49,7 +49,7 @@ class Row:
     at: float = np.nan
 
     @property
-    def met(self) -> bool | None:
+    def is_met(self) -> bool | None:
         """None where nothing is asked or there was nothing to measure."""
         if self.asked is None or np.isnan(self.value):
             return None

@@ -92,7 +92,7 @@ def _plain(row: Row) -> dict[str, Any]:
     least, most = row.asked or (-math.inf, math.inf)
     numbers = {"value": row.value, "at": row.at, "least": least, "most": most}
     told = {name: number if math.isfinite(number) else None for name, number in numbers.items()}
-    return {"name": row.name.strip(), "unit": row.unit, **told, "met": row.met}
+    return {"name": row.name.strip(), "unit": row.unit, **told, "met": row.is_met}
 
 
 def table(title: str, rows: list[Row], told: dict[str, float | None]) -> str:
@@ -103,7 +103,7 @@ def table(title: str, rows: list[Row], told: dict[str, float | None]) -> str:
         frames = row.unit == "ms" and said is not None  # the report counts frames
         shown = "" if said is None else _number(said * 1000.0 / BAKED if frames else said)
         asked = "" if row.asked is None else _asked(*row.asked)
-        missed, at = "NO" if row.met is False else "", "" if row.at != row.at else f"at {row.at:.2f} s"
+        missed, at = "NO" if row.is_met is False else "", "" if row.at != row.at else f"at {row.at:.2f} s"
         start = f"  {row.name:38}{_number(row.value):>10}{shown:>10}  {row.unit:13}{asked:>14}"
         lines.append(f"{start}  {missed:3}{at}".rstrip())
     return "\n".join(lines)

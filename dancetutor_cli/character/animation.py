@@ -32,14 +32,14 @@ class Animation:
     run: PieceRunner = in_turn
 
     @cached_property
-    def baked(self) -> list[BakedPiece]:
+    def baked_pieces(self) -> list[BakedPiece]:
         """The motion of each dancer on the dancer's own pad, with the body of the project's dancer."""
         return self.performance.motions(None if self.section is None else Cut(*self.section), self.run)
 
     @property
     def begin(self) -> float:
         """The second at which the motions of all dancers begin."""
-        return min(float(one.motion.times[0]) for one in self.baked)
+        return min(float(one.motion.times[0]) for one in self.baked_pieces)
 
 
 @dataclass(frozen=True)
@@ -69,9 +69,9 @@ class AnimatedDancer:
         return self.animation.section or (-math.inf, math.inf)
 
     @property
-    def baked(self) -> BakedPiece:
+    def baked_piece(self) -> BakedPiece:
         """The motion on the dancer's own pad, with the body of the project's dancer, whichever character dances."""
-        return self.animation.baked[self.number]
+        return self.animation.baked_pieces[self.number]
 
     @property
     def place(self) -> tuple[float, float]:
@@ -81,7 +81,9 @@ class AnimatedDancer:
     @cached_property
     def motion(self) -> Motion:
         """The motion for the character's skeleton, beginning at the same time as those of the other dancers."""
-        return shifted(padded_from(onto(self.baked.motion, self.character.skeleton), self.animation.begin), *self.place)
+        return shifted(
+            padded_from(onto(self.baked_piece.motion, self.character.skeleton), self.animation.begin), *self.place
+        )
 
     @property
     def moves(self) -> tuple[Plan, Bar | None]:
@@ -91,7 +93,7 @@ class AnimatedDancer:
     def notes(self, of_motion: bool) -> tuple[str, ...]:
         """Return the notes for people, about the whole motion or only about the moves."""
         if of_motion:
-            return self.baked.motion.notes
+            return self.baked_piece.motion.notes
         start, end = self.section
         line = dropped_notes_message([one for one in self._dancer.plan.dropped if start <= one.second <= end])
         return (line,) if line else ()

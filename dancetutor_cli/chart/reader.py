@@ -143,7 +143,7 @@ class SongReader:
             )  # fmt: skip
             self.charts.append(with_players(chart, read, self.data))
 
-    def finished(self, song_tags: list[Tag], timing: Timing) -> Song:
+    def finish(self, song_tags: list[Tag], timing: Timing) -> Song:
         self._read_charts()
         values = self.values(song_tags)
         self._oddities(song_tags, values)
@@ -289,7 +289,7 @@ class _Sm(SongReader):
             elif tag.name == "NOTES":
                 fields = {name: self.text(tag, i) for i, name in enumerate(_SM_FIELDS)}
                 self.add_chart(fields, tag.spans[len(_SM_FIELDS)], timing, self.lines(tag.start), [])
-        return self.finished(song_tags, timing)
+        return self.finish(song_tags, timing)
 
 
 class _Ssc(SongReader):
@@ -315,7 +315,7 @@ class _Ssc(SongReader):
             warnings: list[ReadWarning] = []
             span = notes.spans[0] if notes.spans else (len(self.data), len(self.data))
             self.add_chart(fields, span, self._timing(group, timing, source, line, warnings), line, warnings)
-        return self.finished(song_tags, timing)
+        return self.finish(song_tags, timing)
 
     def _timing(
         self, group: list[Tag], song: Timing, source: timing_tags.Source, line: int, warnings: list[ReadWarning]

@@ -195,6 +195,6 @@ def _write(dance: AnimatedDancer, places: _Places) -> None:
         from dancetutor_cli.dance.quality.report import with_distances
 
         dancer = dance.animation.performance.dancers[dance.number]
-        whole = report_of(dance.baked.motion, mines_of(dancer.play, dancer.pad))
-        report = with_distances(whole, dance.baked.distances, dance.animation.performance.request.style)
+        whole = report_of(dance.baked_piece.motion, mines_of(dancer.play, dancer.pad))
+        report = with_distances(whole, dance.baked_piece.distances, dance.animation.performance.request.style)
         write_report(report, places.report_to, places.plot)

@@ -70,7 +70,7 @@ class Ignores:
     codes: dict[int, frozenset[str]] = field(default_factory=dict)
     rules: Mapping[int, frozenset[str]] = field(default_factory=dict)
 
-    def silenced(self, tick: int, code: str) -> bool:
+    def is_silenced(self, tick: int, code: str) -> bool:
         """Whether findings with this code are silenced in the row at `tick`."""
         return code in self.codes.get(tick, ())
 

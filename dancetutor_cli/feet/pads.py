@@ -76,7 +76,7 @@ class Pad:
         """The direction of each panel's arrow, degrees clockwise from up (to the screen); None for a middle panel."""
         return tuple(math.degrees(math.atan2(x, y)) % 360 if x or y else None for x, y in self.arrows.tolist())
 
-    def mirrored(self, *, left_right: bool) -> NDArray[np.int64] | None:
+    def mirror_columns(self, *, left_right: bool) -> NDArray[np.int64] | None:
         """The column of each column's mirror image, left-right or up-down; None if the pad is not symmetric."""
         sign = np.array([-1.0, 1.0] if left_right else [1.0, -1.0])
         image = np.array(self.centre) + (self.panels - self.centre) * sign

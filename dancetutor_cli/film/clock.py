@@ -59,7 +59,7 @@ class Moment:
     rate: float = 1.0
 
     @property
-    def heard(self) -> float:
+    def heard_second(self) -> float:
         """The second in the music as it is heard: at half speed each event comes at twice its second."""
         return heard_second(self.second, self.rate)
 

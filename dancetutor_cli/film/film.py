@@ -86,19 +86,21 @@ class Film:
             texts = marks.callout_texts(plan.callouts, words)
             lane = lane_width_for_words(marks.room_for(texts, letters, self.face), lane, box, self.columns)
         facing = self.language.film["facing-notes"]
-        geometry = HighwayGeometry(box, lane, receptor, self._directions, down, self.turned, tags, letters, facing)
+        geometry = HighwayGeometry(
+            box, lane, receptor, self._directions, down, self.faces_viewer, tags, letters, facing
+        )
         scroll = plan.look.scroll or parse_scroll(part.scroll)
         score = Score(plan.notes, plan.presses, plan.lines, plan.callouts)
         return Highway(score, geometry, scroll, plan.scroll_bpm, self.face)
 
     @cached_property
-    def turned(self) -> bool:
+    def faces_viewer(self) -> bool:
         """Whether the dancer faces the viewer. Then all arrows turn with the pad, so that they agree with her steps."""
         return faces_viewer(self.plan.look)
 
     @property
     def _directions(self) -> tuple[float | None, ...]:
-        turn = 180.0 if self.turned else 0.0
+        turn = 180.0 if self.faces_viewer else 0.0
         return tuple(None if way is None else (way + turn) % 360.0 for way in self.plan.directions)
 
     @cached_property
@@ -106,7 +108,7 @@ class Film:
         """The places of the words, for all frames."""
         dancer = self._dancer.heads_and_feet if self.layout.dancer and self.plan.motions else None
         lettering = WordStyle(self.face, self.style, self.language)
-        return placement(self.plan, self.boxes, lettering, dancer, self.turned)
+        return placement(self.plan, self.boxes, lettering, dancer, self.faces_viewer)
 
     @cached_property
     def _progress(self) -> captions.ProgressStrip | None:
@@ -147,7 +149,7 @@ class Film:
         if plan.pad is None:
             return None, None
         large, small = None, None
-        view = PadView(plan.pad, self._directions, self.turned)
+        view = PadView(plan.pad, self._directions, self.faces_viewer)
         if feet:
             rims = self.style.players if plan.dancers > 1 else (captions.WHITE,)
             now = name_sprite(self.language.film["now"], self.face, self.scale) if after else None

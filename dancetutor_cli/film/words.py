@@ -112,7 +112,7 @@ class Phrase(NamedTuple):
     why: str = ""
     several: str = ""
 
-    def counted(self, count: int, alike: bool) -> str:
+    def text_of(self, count: int, alike: bool) -> str:
         """Return the words for `count` of these moves in a row; alike : whether all have the same words."""
         if count == 1:
             return self.text

@@ -199,7 +199,7 @@ class _Window:
         """Solve the charts of a file. A file that fails leaves the window as it was."""
         before = len(self._waiting), self._rows
         try:
-            for subject in file.solved():
+            for subject in file.solve():
                 self._waiting.append((file, subject))
                 self._rows += subject.row_count + _CHART
                 if self.is_full:  # a file may hold thousands of charts
@@ -251,7 +251,7 @@ class _File:
             self._selected = task.selection.charts(self._song)
             self._meters = Meters(self._song, task.settings)
 
-    def solved(self) -> Iterator[ChartSubject]:
+    def solve(self) -> Iterator[ChartSubject]:
         """Return the selected charts, solved one by one."""
         return iter(()) if self._failed else solve_selected(self._song, self._selected, self._task)
 

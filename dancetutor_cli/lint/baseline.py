@@ -57,7 +57,7 @@ class Baseline:
         name = self._relative(file)
         self._whole[name] = set().union(*(rules for (of, _), rules in self._ran.items() if of == name))
 
-    def unused(self) -> list[Key]:
+    def unused_keys(self) -> list[Key]:
         """Return the entries that no finding matched although their rule ran. They are no longer needed."""
         return sorted(key for key, count in self._remaining.items() if count > 0 and self._could_match(key))
 

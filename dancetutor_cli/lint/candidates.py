@@ -60,8 +60,8 @@ class Candidates:
     def crossed_runs(self) -> list[list[tuple[int, int]]]:
         """For each play, every run of steps with crossed feet: its first row, counted in the play, and its length."""
         plays = self.plays
-        rows = plays.stepped
-        crossed, number = plays.crossed[rows], plays.number[rows]
+        rows = plays.step_rows
+        crossed, number = plays.is_crossed[rows], plays.number[rows]
         again = np.zeros(len(rows) + 1, dtype=bool)  # both the step and the one before it are crossed
         again[1:-1] = crossed[1:] & crossed[:-1] & (number[1:] == number[:-1])
         first, last = np.flatnonzero(crossed & ~again[:-1]), np.flatnonzero(crossed & ~again[1:])
@@ -86,13 +86,13 @@ class Candidates:
     def free_doublesteps(self) -> list[list[int]]:
         """For each play, the rows of doublesteps that do not cross the feet, where the other foot was free."""
         rows = self.plays.rows_with("doublestep")
-        return self.plays.of_each(rows[self.plays.free[rows] & ~self.plays.crossed[rows]])
+        return self.plays.of_each(rows[self.plays.free[rows] & ~self.plays.is_crossed[rows]])
 
     @cached_property
     def ties(self) -> list[list[int]]:
         """For each play, the first row of every run of steps that cost the same with other limbs."""
         plays = self.plays
-        rows = plays.stepped
+        rows = plays.step_rows
         tied, number = plays.margin[rows] == 0, plays.number[rows]
         tied[1:] &= ~(tied[:-1] & (number[1:] == number[:-1]))
         return plays.of_each(rows[tied])
@@ -100,7 +100,7 @@ class Candidates:
     @cached_property
     def repeats(self) -> Repeats:
         """Steps that may be the second or third of one foot in a row."""
-        plays, p = self.plays, self.plays.pressed  # the taps of a roll also interrupt a run of steps
+        plays, p = self.plays, self.plays.presses_with_taps  # the taps of a roll also interrupt a run of steps
         new = np.ones(len(p.row) + 1, dtype=bool)
         np.not_equal(p.row[1:], p.row[:-1], out=new[1:-1])
         alone = np.flatnonzero(new[1:] & new[:-1])  # presses that are the only one of their row
@@ -143,7 +143,7 @@ class Candidates:
         """For each play, the least time (s) from one row that a foot presses to the next, with the taps of rolls."""
         plays, found = self.plays, [np.inf] * len(self.plays.plays)
         for limb in (_LEFT, _RIGHT):
-            row = plays.pressed.of(limb).row
+            row = plays.presses_with_taps.of(limb).row
             same = np.flatnonzero(plays.number[row[1:]] == plays.number[row[:-1]])
             of_foot = plays.least(row[1:][same], (plays.second[row[1:]] - plays.second[row[:-1]])[same])
             found = [min(both) for both in zip(found, of_foot, strict=True)]
@@ -163,7 +163,7 @@ class Candidates:
     @cached_property
     def facing_counts(self) -> list[tuple[int, ...]]:
         """For each play, the number of rows by how far the dancer faces away from the screen, see `Figures.facing`."""
-        rows = self.plays.stepped
+        rows = self.plays.step_rows
         away = np.abs(self.plays.facing[rows]) % 360.0
         bins = np.digitize(np.minimum(away, 360.0 - away), _FACING)
         k, of = len(self.plays.first) - 1, len(_FACING) + 1

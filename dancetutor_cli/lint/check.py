@@ -179,7 +179,7 @@ def _silenced(finding: Finding, subject: ChartSubject) -> bool:
     tick, code = round(finding.beat * TICKS_PER_BEAT), all_rules()[finding.rule].editor_code
     known = subject.ignores
     names = {finding.name, all_rules()[finding.rule].former_name} - {""}
-    return bool(code and known.silenced(tick, code)) or any(
+    return bool(code and known.is_silenced(tick, code)) or any(
         known.silenced_rule(tick, finding.rule, name) for name in names
     )
 

@@ -110,7 +110,7 @@ class Shape:
 
         most : most rows of a phrase; begins : rows in which the dancer begins again, so a phrase may end before them
         """
-        mirror = self._pad.mirrored(left_right=True)
+        mirror = self._pad.mirror_columns(left_right=True)
         if mirror is None or float(np.ptp(self._pad.panels[:, 0])) > 2.0 or row not in self._place:
             return
         at, found = self._place[row], list[Edit]()
@@ -249,7 +249,7 @@ class Shape:
 
     def _is_unison(self, at: int) -> bool:
         mine, theirs = self._pressed[at], self._others.get(self._ticks[at], frozenset())
-        mirror = self._pad.mirrored(left_right=True)
+        mirror = self._pad.mirror_columns(left_right=True)
         return theirs == mine or (mirror is not None and theirs == {int(mirror[column]) for column in mine})
 
     @cached_property

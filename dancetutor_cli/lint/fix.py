@@ -119,7 +119,7 @@ def _fix(job: FixTask) -> FixOutcome:
         for chart in task.selection.charts(song):
             session.safe(chart.index)
     for finding, player in job.findings:
-        session.finding(finding.chart or 0, finding, player)
+        session.fix(finding.chart or 0, finding, player)
     new = session.song.data
     if job.write and new != song.data:
         _write(job, song.data, new)
@@ -179,7 +179,7 @@ class FixSession:
                     for fix in fixes:
                         self._try(self._state(chart, player + 1), [fix])
 
-    def finding(self, chart: int, finding: Finding, player: int = 0) -> None:
+    def fix(self, chart: int, finding: Finding, player: int = 0) -> None:
         """Remove one finding of a chart with the smallest edit that does so, or add the finding to `unfixed`.
 
         player : the player in whose part of a chart for two the finding is, else 0

@@ -40,7 +40,7 @@ class NoteFacts:
         ticks, first = np.unique(notes.tick[steps], return_index=True)
         yield from _runs(off[ticks % TICKS_PER_MEASURE], ticks, notes.line[steps][first])
 
-    def unjudged(self) -> Iterator[tuple[int, int, int]]:
+    def unjudged_runs(self) -> Iterator[tuple[int, int, int]]:
         """Yield tick, line and number of notes of every run of notes in a warp or a fake segment."""
         notes = self._chart.notes
         timing = self._chart.timing
@@ -98,7 +98,7 @@ class PlacedChart:
         margin = -1 if self.play is None or self.play.margin is None else int(self.play.margin[row])
         return None if margin < 0 else margin
 
-    def pressed(self, row: int) -> list[int]:
+    def step_columns(self, row: int) -> list[int]:
         """Return the note columns that have a step in a row of the play."""
         assert self.play is not None
         return [column for column, kind in enumerate(self.play.rows.steps[row].tolist()) if kind]
@@ -120,7 +120,7 @@ class PlacedChart:
         """
         assert self.play is not None
         if note_column is None:
-            note_column = next(iter(self.pressed(row)), None)
+            note_column = next(iter(self.step_columns(row)), None)
         line = int(self.file_lines[row])
         return {
             "line": line,

@@ -248,7 +248,7 @@ def led_by_a_jack(subject: ChartSubject, row: int) -> bool:
     """Whether two of the few steps before a row, one after the other, are on the same panels."""
     rows = subject.step_rows
     at = int(rows.searchsorted(row))
-    pressed = [subject.pressed(int(one)) for one in rows[max(at - _NEAR, 0) : at]]
+    pressed = [subject.step_columns(int(one)) for one in rows[max(at - _NEAR, 0) : at]]
     return any(one == two for one, two in pairwise(pressed))
 
 
@@ -319,7 +319,7 @@ class _Step(NamedTuple):
         return self.at + 1 < len(rows) and pause >= REST * self.subject.pause(int(rows[self.at + 1]))
 
     def _after_jacks(self) -> bool:
-        pressed = [self.subject.pressed(int(one)) for one in self.subject.step_rows[max(self.at - 2, 0) : self.at]]
+        pressed = [self.subject.step_columns(int(one)) for one in self.subject.step_rows[max(self.at - 2, 0) : self.at]]
         return len(pressed) == 2 and pressed[0] == pressed[1]
 
     def _to_other_pad(self) -> bool:

@@ -48,7 +48,7 @@ class PlayFacts:
     @cached_property
     def _pressed(self) -> PlayedSteps:
         """All presses of the play, with the virtual taps of rolls."""
-        return self._plays.pressed.between(self._first, self._after)
+        return self._plays.presses_with_taps.between(self._first, self._after)
 
     @cached_property
     def presses(self) -> PlayedSteps:
@@ -60,9 +60,9 @@ class PlayFacts:
         return self.presses.of(0), self.presses.of(1)
 
     @cached_property
-    def stepped(self) -> NDArray[np.int64]:
+    def step_rows(self) -> NDArray[np.int64]:
         """The rows with a step, whether or not a limb presses it."""
-        return self._plays.own(self._plays.stepped, self.number)
+        return self._plays.own(self._plays.step_rows, self.number)
 
     @cached_property
     def pauses(self) -> NDArray[np.float64]:
@@ -79,7 +79,7 @@ class PlayFacts:
         """(n,) number of panels that are down in each row, stepped on or held; taps of rolls do not count."""
         return self._plays.down[self._first : self._after]
 
-    def crossed(self, row: int) -> bool:
+    def is_crossed(self, row: int) -> bool:
         """Whether the feet are crossed after a row."""
         return bool(abs(self._play.facing[row]) > CROSSED)
 
@@ -87,8 +87,8 @@ class PlayFacts:
         """Yield the rows of every run of at least `least` stepped rows with crossed feet."""
         for first, count in self.own(self.candidates.crossed_runs):
             if count >= least:
-                at = int(self.stepped.searchsorted(first))
-                yield self.stepped[at : at + count].tolist()
+                at = int(self.step_rows.searchsorted(first))
+                yield self.step_rows[at : at + count].tolist()
 
     def switching_runs(self, least: float, max_seconds: float) -> Iterator[tuple[list[int], list[int]]]:
         """Yield rows and limbs of every run of at least `least` single steps on one panel while no other panel is held.
@@ -121,9 +121,9 @@ class PlayFacts:
         """
         if self._play.confidence is None:
             return []
-        sure = self._play.confidence[self.stepped]
+        sure = self._play.confidence[self.step_rows]
         places = np.flatnonzero(sure < below)  # not where it is nan
-        known = zip(self.stepped[places].tolist(), sure[places].tolist(), strict=True)
+        known = zip(self.step_rows[places].tolist(), sure[places].tolist(), strict=True)
         passages: list[list[tuple[int, float]]] = []
         before = -_BETWEEN - 2
         for place, one in zip(places.tolist(), known, strict=True):

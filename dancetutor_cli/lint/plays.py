@@ -170,7 +170,7 @@ class Plays:
         return row, column, ends[cell] + (self.number[row] << _PLAY)
 
     @cached_property
-    def mined(self) -> NDArray[np.bool_]:
+    def has_mine(self) -> NDArray[np.bool_]:
         """(n,) whether each row has a mine."""
         mines = self.joined(play.rows.mines for play in self.plays)
         found = np.zeros(len(mines), dtype=bool)
@@ -185,17 +185,17 @@ class Plays:
     @cached_property
     def with_mines(self) -> list[bool]:
         """For each play, whether it has mines."""
-        return [count > 0 for count in self.count_rows(np.flatnonzero(self.mined))]
+        return [count > 0 for count in self.count_rows(np.flatnonzero(self.has_mine))]
 
     @cached_property
-    def stepped(self) -> NDArray[np.int64]:
+    def step_rows(self) -> NDArray[np.int64]:
         """The rows with a step, whether or not a limb presses it."""
         return np.flatnonzero(self.steps_by_column.any(axis=0))
 
     @cached_property
     def pauses(self) -> NDArray[np.float64]:
         """(n,) seconds since the row with a step before, for rows of `stepped`; inf for the first and other rows."""
-        rows, found = self.stepped, np.full(self.first[-1], np.inf)
+        rows, found = self.step_rows, np.full(self.first[-1], np.inf)
         apart = self.second[rows[1:]] - self.second[rows[:-1]]
         found[rows[1:]] = np.where(self.number[rows[1:]] == self.number[rows[:-1]], apart, np.inf)
         return found
@@ -213,7 +213,7 @@ class Plays:
         return np.asarray(lone & ~taps.any(axis=0) if taps.any() else lone)
 
     @cached_property
-    def crossed(self) -> NDArray[np.bool_]:
+    def is_crossed(self) -> NDArray[np.bool_]:
         """(n,) whether the feet are crossed after a row."""
         return np.asarray(np.abs(self.facing) > CROSSED)
 
@@ -238,7 +238,7 @@ class Plays:
         A hold limits the other foot if it ends after the row before these two.
         """
         foot, lone = self.foot, self.lone
-        free = lone & (foot <= _RIGHT) & ~self.mined
+        free = lone & (foot <= _RIGHT) & ~self.has_mine
         free[1:] &= lone[:-1]
         free[np.array(self.first[:-1])[np.diff(self.first) > 0]] = False
         rows, columns, ends = self._heads
@@ -253,7 +253,7 @@ class Plays:
         return free
 
     @cached_property
-    def pressed(self) -> PlayedSteps:
+    def presses_with_taps(self) -> PlayedSteps:
         """All presses, with the virtual taps of rolls."""
         limbs = self.limb.ravel()
         cell = np.flatnonzero(limbs >= 0)
@@ -263,7 +263,7 @@ class Plays:
     @cached_property
     def presses(self) -> PlayedSteps:
         """All presses, without virtual taps."""
-        p = self.pressed
+        p = self.presses_with_taps
         real = self.real[p.column, p.row]
         return p if real.all() else PlayedSteps(p.row[real], p.column[real], p.limb[real])
 

@@ -178,7 +178,7 @@ class LintRun:
             others = sum(new.allowed.values()) - len(self._found_keys)
             kept = f", {others} of other files and rules kept" if others else ""
             return [f"{path}: {plural(len(self._found_keys), 'finding')} written{kept}"]
-        unused = self._baseline.unused()
+        unused = self._baseline.unused_keys()
         if not unused:
             return []
         what = "1 entry is" if len(unused) == 1 else f"{len(unused)} entries are"

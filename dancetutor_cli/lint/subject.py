@@ -120,7 +120,7 @@ class ChartSubject(PlacedChart):
         """Name of the move -> number of rows of the play in which it happens."""
         return {} if self.facts is None else self.facts.candidates.plays.counts[self.facts.number]
 
-    def sized(self, rate: float = 1.0) -> MeteredChart | None:
+    def metered_chart(self, rate: float = 1.0) -> MeteredChart | None:
         """Return the chart's meters on every scale, at a rate of the music; None without a play or a model."""
         if self.facts is None:
             return None
@@ -167,7 +167,7 @@ class ChartSubject(PlacedChart):
     @cached_property
     def step_rows(self) -> NDArray[np.int64]:
         """The rows of the play with at least one step."""
-        return np.zeros(0, dtype=np.int64) if self.facts is None else self.facts.stepped
+        return np.zeros(0, dtype=np.int64) if self.facts is None else self.facts.step_rows
 
     @cached_property
     def angles(self) -> list[list[float]]:
@@ -258,7 +258,7 @@ class ChartSubject(PlacedChart):
         limbs = self.play.limb[row][self.play.rows.steps[row] != StepKind.ROLL_TAP]
         return "left" if (limbs == Limb.LEFT_FOOT).any() else "right"
 
-    def unplayed(self, row: int) -> int:
+    def count_unplayed(self, row: int) -> int:
         """Return the number of steps of a row for which no limb is free."""
         assert self.play is not None
         return int((self.play.limb[row] == Limb.UNPLAYED).sum())

@@ -59,7 +59,7 @@ class ComparedChart:
     ours: Mapping[str, Sequence[int]]
     theirs: GameCounts
 
-    def shared(self, name: str) -> int:
+    def shared_count(self, name: str) -> int:
         """Return the number of occurrences in the same row; if only numbers are known, the most that this can be."""
         ours, theirs = self.ours[name], self.theirs[name]
         if isinstance(theirs, int):

@@ -35,7 +35,7 @@ def print_report(report: MotionReport) -> None:
         unit = f" {f.unit}" if f.unit else ""
         goal = "" if f.goal is None else f"{'at least' if f.at_least else 'at most'} {f.goal:g}{unit}"
         value = "nothing to measure" if f.value != f.value else f"{_number(f.value)}{unit}"
-        table.add_row(f.name, value, goal, {None: "", True: "yes", False: "NO"}[f.met])
+        table.add_row(f.name, value, goal, {None: "", True: "yes", False: "NO"}[f.is_met])
     Console().print(table)
     if report.distances:
         Console().print(_distances(report))
@@ -67,7 +67,7 @@ def as_json(report: MotionReport) -> dict[str, Any]:
             "unit": f.unit,
             "goal": f.goal,
             "at_least": f.at_least,
-            "met": f.met,
+            "met": f.is_met,
         }
         for f in report.figures
     ]
@@ -75,7 +75,7 @@ def as_json(report: MotionReport) -> dict[str, Any]:
     out = {
         "schema": 1,
         "figures": figures,
-        "met": report.met,
+        "met": report.is_met,
         "notes": list(report.notes),
         "contact_errors_ms": errors,
     }

@@ -147,7 +147,7 @@ class Pack:
             out += [PackChart(title, name, chart) for chart in result.charts if chart.playable and chart.row_count]
         return out
 
-    def missing(self) -> Iterator[str]:
+    def missing_lines(self) -> Iterator[str]:
         """Yield a line for each thing that is missing or wrong in the pack."""
         yield from self._missing_difficulties()
         for kind, words in (("music", "missing: music of"), ("differ", "wrong: .sm and .ssc differ:")):
@@ -242,7 +242,7 @@ def pack_lines(pack: Pack, width: int) -> list[str]:
     for steps_type, _ in types.most_common(_TYPES):
         lines.append(_meters_line(steps_type, [one for one in charts if one.result.steps_type == steps_type]))
     lines.append(_by_technique(charts))
-    lines += _listed("", pack.missing(), _MISSING)
+    lines += _listed("", pack.missing_lines(), _MISSING)
     lines += _listed("stands out: ", pack.outliers(), _OUTLIERS)
     return [cut(line, width) for line in lines[:LINES]]
 
@@ -292,7 +292,7 @@ def table_lines(found: TechniqueComparison) -> Iterator[str]:
         charts = [one for one in found.charts if name in one.theirs]
         if charts:
             ours, theirs = sum(len(one.ours[name]) for one in charts), sum(_count(one, name) for one in charts)
-            both, alike = sum(one.shared(name) for one in charts), sum(not one.differs(name) for one in charts)
+            both, alike = sum(one.shared_count(name) for one in charts), sum(not one.differs(name) for one in charts)
             share = f"{alike} ({100 * alike / len(charts):.0f} %)"
             rows.append([name, *map(str, (len(charts), ours, theirs, both)), share])
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]

@@ -178,7 +178,7 @@ def html_page(pack: Pack, changes: Sequence[str] = ()) -> str:
     name = safe_path(pack.folder.rsplit("/", 1)[-1])
     counts = f"{plural(pack.songs, 'song')}, {plural(len(charts), 'chart')}"
     body = [f'<h1>{escape(name)}</h1><p class="lead">{counts}</p>']
-    body += [_needs(pack), _list("What is missing or wrong", pack.missing())]
+    body += [_needs(pack), _list("What is missing or wrong", pack.missing_lines())]
     if changes:
         body.append(_list("What has changed", changes))
     body.append(_list("What stands out", pack.outliers()))

@@ -49,7 +49,7 @@ def animated(request: DanceRequest, section: str | None = None, rate: float = 1.
 
 def baked(request: DanceRequest, section: str | None = None, rate: float = 1.0) -> Motion:
     """The motion of one who dances alone. Arguments as in `animated`."""
-    (one,) = animated(request, section, rate).baked
+    (one,) = animated(request, section, rate).baked_pieces
     return one.motion
 
 

@@ -82,7 +82,7 @@ def test_the_reports_goals_hold(crossed: Motion) -> None:
     plain, measured = report(danced(SLOW, often=0.0)), report(crossed)
     for name in ("palm off the bar", "limb in torso", "arm in arm", "arm in leg", "frames past joint limits",
                  "wrist speed", "head from the chest", "plant slide"):  # fmt: skip
-        assert measured[name].met, name
+        assert measured[name].is_met, name
     assert measured["jerk of the root"].value < plain["jerk of the root"].value + 10.0
     assert measured["balance"].value > plain["balance"].value - 3.0
 

@@ -38,7 +38,7 @@ def test_only_what_she_plays_is_a_contact(motion: Motion) -> None:
     figures = {f.name: f for f in report(motion).figures}
     assert figures["notes not played"].value == 2 and figures["notes not played"].goal is None
     assert figures["contacts"].value == 5 and figures["contacts missed"].value == 0
-    assert figures["contact error"].met
+    assert figures["contact error"].is_met
 
 
 def test_a_section_reports_only_its_own() -> None:

@@ -90,7 +90,7 @@ def test_in_the_end_she_stands_at_home(shown: dict[Cut, Motion], cut: Cut) -> No
     """On the pad's middle, feet side by side, both on the ground, and no limb has met another one on the way."""
     motion = shown[cut]
     body, skeleton = body_of(motion), motion.skeleton
-    assert body.standing[-1].all()
+    assert body.is_standing[-1].all()
     assert feet_moved(motion, cut.end - 0.15, cut.end) < 0.003
     assert feet_moved(shown[WHOLE], cut.end - 0.3, cut.end) > 0.01
     home = stand_at(np.zeros(2), 0.0, default_settings())
@@ -100,7 +100,7 @@ def test_in_the_end_she_stands_at_home(shown: dict[Cut, Motion], cut: Cut) -> No
     assert abs(np.degrees(np.arctan2(across[2], across[0]))) < 12.0, "facing the screen"
     measured = report(motion)
     for name in ("plant slide", "penetration", "limb in torso", "leg in leg", "frames past joint limits", "balance"):
-        assert measured[name].met is not False, f"{name}: {measured[name].value}"
+        assert measured[name].is_met is not False, f"{name}: {measured[name].value}"
 
 
 def test_where_there_is_no_time_she_stays(performance: Performance, shown: dict[Cut, Motion]) -> None:
@@ -127,7 +127,7 @@ def test_where_nobody_has_stepped_yet_the_dance_itself_begins(
 def test_a_foot_that_was_on_its_way_does_not_slide_back(end: float) -> None:
     wanted = DanceRequest(charts_path() / "two_left_feet" / "two_left_feet.ssc", Selection(index=2))
     (one,) = perform(solve(wanted), wanted).motions(Cut(end - 4.0, end + 1.5, steps_until=end, walks_off=False))
-    assert report(one.motion)["plant slide"].met, report(one.motion)["plant slide"]
+    assert report(one.motion)["plant slide"].is_met, report(one.motion)["plant slide"]
 
 
 @pytest.mark.parametrize(("offset", "end"), [("0", 0.7), ("2", 0.5)])

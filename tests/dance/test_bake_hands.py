@@ -37,7 +37,7 @@ def test_arms_and_back_stay_within_their_limits(down: Motion) -> None:
 
 def test_the_palm_is_on_time_and_nothing_is_in_the_torso(down: Motion) -> None:
     measured = report(down)
-    assert measured["contact error"].met and measured["contacts missed"].met and measured["limb in torso"].met
+    assert measured["contact error"].is_met and measured["contacts missed"].is_met and measured["limb in torso"].is_met
 
 
 def test_she_looks_at_a_panel_that_her_hand_is_on() -> None:

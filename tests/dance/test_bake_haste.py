@@ -79,7 +79,7 @@ def test_legs_push_off_nearly_straight_in_jumps_with_time() -> None:
     motion = bake(chart().timing, play(events), pad())
     body = body_of(motion)
     knees = 180.0 - knee_angles(body, motion.skeleton)
-    flights = runs(~body.standing.any(axis=1))[1:]
+    flights = runs(~body.is_standing.any(axis=1))[1:]
     off = np.array([knees[first - 1 : first + 1].min() for first, _ in flights])  # of the leg that is farther away
     assert len(flights) == 7 and off.min() >= 15.0 and off.max() <= 25.5
     _, fold, give = np.median(jump_knees(body, knees), axis=0)

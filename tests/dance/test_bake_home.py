@@ -66,7 +66,7 @@ def test_the_first_step_from_home_does_not_turn_her_for_a_foot_that_is_not_there
 @pytest.mark.parametrize("wait", [2.0, 4.5])
 def test_every_goal_is_met(wait: float) -> None:
     measured = report(bake(chart().timing, played(wait), pad()))
-    assert [f for f in measured.figures if f.met is False] == [], measured.notes
+    assert [f for f in measured.figures if f.is_met is False] == [], measured.notes
 
 
 def test_the_mirror_image_goes_home_as_the_mirror_image() -> None:

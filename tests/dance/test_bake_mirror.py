@@ -39,7 +39,7 @@ def mirrorable(path: Path, index: int) -> tuple[Timing, Play, Pad, np.ndarray]:
     """Timing, play and pad of a chart, and the column that each one is in the mirror image."""
     one = solved_one(path, Selection(index=index), "thesis")
     assert one.play is not None and one.pad is not None
-    columns = one.pad.mirrored(left_right=True)
+    columns = one.pad.mirror_columns(left_right=True)
     assert columns is not None
     return one.chart.timing, one.play, one.pad, columns
 

@@ -39,7 +39,7 @@ def flights(plan: Plan) -> np.ndarray:
 
 def meets(steps: Play, double: bool = False) -> None:
     measured = report(bake(chart().timing, steps, pad(double)), mines_of(steps, pad(double)))
-    assert [f for f in measured.figures if f.name in CLEAR and f.met is False] == []
+    assert [f for f in measured.figures if f.name in CLEAR and f.is_met is False] == []
     assert np.abs(measured.contact_errors).max() < 1.0
 
 
@@ -169,7 +169,7 @@ def test_a_foot_that_has_just_landed_taps_where_it_is() -> None:
     assert (again.target, again.yaw) == (first.target, first.yaw)
     meets(steps)
     measured = report(bake(chart().timing, steps, pad()))
-    assert measured["plant slide"].met
+    assert measured["plant slide"].is_met
 
 
 def test_jumps_after_long_holds_leave_the_ground_a_time_to_push() -> None:

@@ -85,7 +85,7 @@ def test_feet_of_both_are_exact_and_joints_within_their_limits(pair: list[Motion
         measured = report(motion)
         assert np.abs(measured.contact_errors).max() < 1.0
         for name in ("contacts missed", "plant slide", "penetration", "foot in foot", "frames past joint limits"):
-            assert measured[name].met is not False, f"{name}: {measured[name].value}"
+            assert measured[name].is_met is not False, f"{name}: {measured[name].value}"
         starts.append([contact.start for contact in motion.contacts])
     assert starts[0] == starts[1]
 

@@ -35,7 +35,7 @@ def good(steps: Motion) -> MotionReport:
 
 @pytest.mark.parametrize("name", GOALS)
 def test_goal_is_met_by_steps_jumps_crossovers_and_streams(good: MotionReport, name: str) -> None:
-    assert good[name].met is not False, good[name]
+    assert good[name].is_met is not False, good[name]
 
 
 def test_joints_stay_within_limits(good: MotionReport) -> None:
@@ -52,7 +52,7 @@ def test_a_sunken_dancer_penetrates(steps: Motion) -> None:
 
 def test_a_drifting_dancer_slides_and_wobbles(steps: Motion) -> None:
     drift = 0.05 * np.sin(steps.times * 3)[:, None] * np.array([1.0, 0, 0])
-    assert moved(steps, drift)["plant slide"].met is False
+    assert moved(steps, drift)["plant slide"].is_met is False
 
 
 def test_slow_gravity_is_seen(steps: Motion) -> None:
@@ -74,16 +74,16 @@ def test_a_twirled_pelvis_turns_too_fast(steps: Motion, good: MotionReport) -> N
     rotations = steps.rotations.copy()
     twirl = quat.from_axis_angle((0, 1, 0), 0.3 * np.sin(2 * np.pi * 8 * steps.times))
     rotations[:, 0] = quat.multiply(twirl, rotations[:, 0])
-    assert good["pelvis turns at"].met is True
-    assert report(replace(steps, rotations=rotations))["pelvis turns at"].met is False
+    assert good["pelvis turns at"].is_met is True
+    assert report(replace(steps, rotations=rotations))["pelvis turns at"].is_met is False
 
 
 def test_a_head_on_backward_is_seen(steps: Motion, good: MotionReport) -> None:
     rotations = steps.rotations.copy()
     j = steps.skeleton.index("skullbase")
     rotations[:, j] = quat.multiply(rotations[:, j], quat.from_axis_angle((0, 1, 0), np.full(len(steps.times), 2.4)))
-    assert good["head from the chest"].met is True
-    assert report(replace(steps, rotations=rotations))["head from the chest"].met is False
+    assert good["head from the chest"].is_met is True
+    assert report(replace(steps, rotations=rotations))["head from the chest"].is_met is False
 
 
 def test_a_broken_knee_is_past_its_limit(steps: Motion) -> None:
@@ -111,7 +111,7 @@ def test_hands_hit(steps: Motion) -> None:
         chart().timing, play([(1.0, {0: L}), (1.5, {3: R}), (3.0, {0: L, 3: R, 2: RH}), (4.5, {0: L})]), pad()
     )
     measured = report(motion)
-    assert measured["contact error"].met and measured["contacts missed"].value == 0
+    assert measured["contact error"].is_met and measured["contacts missed"].value == 0
 
 
 def test_unknown_figure_names_those_there_are(good: MotionReport) -> None:

@@ -75,7 +75,7 @@ def _turning(points: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("gait", ["flat", "heels"])
 def test_every_goal_is_met(gait: str) -> None:
     measured = report(bake(chart().timing, play(EVENTS), pad(), gait=gait))
-    assert [f for f in measured.figures if f.met is False] == [], measured.notes
+    assert [f for f in measured.figures if f.is_met is False] == [], measured.notes
 
 
 def test_without_time_she_stands_there() -> None:
@@ -175,7 +175,7 @@ def test_she_walks_over_to_the_other_pad() -> None:
     between = [w for w in plan.walks if w.start > 5.0 and w.end < 9.0]
     assert len(between) == 1
     measured = report(motion)
-    assert [f for f in measured.figures if f.met is False] == [], measured.notes
+    assert [f for f in measured.figures if f.is_met is False] == [], measured.notes
     before, after = sample(motion, np.array([between[0].start - 0.1, between[0].end + 0.1]))[1]
     assert before[0] - after[0] > 0.7
     for track in plan.feet:  # no step stretches from one pad to the other

@@ -36,7 +36,7 @@ def share_in_hull(body: Body, start: float, end: float) -> float:
     zmp = mass[:, [0, 2]] - (mass[:, 1] / (acceleration[:, 1] + GRAVITY))[:, None] * acceleration[:, [0, 2]]
     stands, inside = 0, 0
     for k in np.flatnonzero((body.times[1:-1] > start) & (body.times[1:-1] < end)):
-        if body.standing[k : k + 3].any(axis=1).all():
+        if body.is_standing[k : k + 3].any(axis=1).all():
             soles = body.soles[k + 1].reshape(-1, 3)
             stands += 1
             inside += outside(soles[soles[:, 1] < GROUND + 0.004][:, [0, 2]], zmp[k]) <= 0.02
@@ -115,7 +115,7 @@ def test_she_stands_tall_at_any_pace(gap: float) -> None:
     """As stamina players do: knees a little bent, and in streams a little lean."""
     motion = bake(chart().timing, play(stream(1.0, 36, gap)), pad(), section=(1.5, 1.0 + 35 * gap))
     body = body_of(motion)
-    standing = (180.0 - knee_angles(body, motion.skeleton))[body.standing]
+    standing = (180.0 - knee_angles(body, motion.skeleton))[body.is_standing]
     assert 18.0 < np.median(standing) < 36.0
     assert 3.0 < np.median(trunk_lean(body, motion.skeleton)) < 12.0
 
@@ -130,7 +130,7 @@ def test_legs_drive_a_jump_and_give_after_it() -> None:
         assert 15.0 < off < 25.0 and fold > off + 10.0 and give > off + 10.0
     arms = body.joints[:, [motion.skeleton.index(f"{s}_radiocarpal") for s in "lr"], 1].mean(axis=1)
     arms -= body.joints[:, motion.skeleton.index("vt4"), 1]
-    flies = np.asarray(~body.standing.any(axis=1))
+    flies = np.asarray(~body.is_standing.any(axis=1))
     crouched = (body.times > body.times[flies].min() - 0.25) & (body.times < body.times[flies].min() - 0.12)
     assert arms[flies].max() > arms[crouched].max() + 0.03
 
@@ -140,10 +140,10 @@ def test_both_legs_push_where_she_stands_nearer_to_one_foot() -> None:
     motion = bake(chart().timing, play([(1.0, {0: L}), (1.5, {2: R}), (3.0, {2: L, 3: R}), (4.5, {0: L, 2: R})]), pad())
     body = body_of(motion)
     knees = 180.0 - knee_angles(body, motion.skeleton)
-    off = [knees[first - 1] for first, end in runs(~body.standing.any(axis=1)) if end - first > 6]
+    off = [knees[first - 1] for first, end in runs(~body.is_standing.any(axis=1)) if end - first > 6]
     assert len(off) == 2
     assert all(np.ptp(both) < 8.0 and both.max() < 28.0 for both in off), off
-    assert report(motion)["flight gravity off by"].met
+    assert report(motion)["flight gravity off by"].is_met
 
 
 def test_she_crouches_before_a_jump_and_after_it() -> None:
@@ -151,7 +151,7 @@ def test_she_crouches_before_a_jump_and_after_it() -> None:
     body = body_of(motion)
     height, times = body.joints[:, 0, 1], body.times
     stands = np.median(height[(times > 1.8) & (times < 2.2)])
-    flies = times[~body.standing.any(axis=1)]
+    flies = times[~body.is_standing.any(axis=1)]
     take_off, landing = flies.min(), flies.max()
     assert height[(times > take_off - 0.3) & (times < take_off)].min() < stands - 0.03
     assert height[(times > landing) & (times < landing + 0.25)].min() < stands - 0.02
@@ -164,7 +164,7 @@ def test_close_jumps_leave_no_time_to_crouch() -> None:
     def dip(gap: float) -> float:
         events = [(1.0 + gap * k, {(0, 1)[k % 2]: L, (3, 2)[k % 2]: R}) for k in range(8)]
         body = body_of(bake(chart().timing, play(events), pad()))
-        inside = (body.times > 1.0 + gap) & (body.times < 1.0 + 6 * gap) & body.standing.any(axis=1)
+        inside = (body.times > 1.0 + gap) & (body.times < 1.0 + 6 * gap) & body.is_standing.any(axis=1)
         return float(SETTINGS.body.leg + 0.09 - np.percentile(body.joints[inside, 0, 1], 5))
 
     assert dip(0.8) > dip(0.3) + 0.02

@@ -20,7 +20,7 @@ ALL_GOALS = ("contacts missed", "foot in foot", "frames past joint limits", "gro
 
 def check(motion: Motion) -> None:
     measured = report(motion)
-    assert [f for f in measured.figures if f.name in ALL_GOALS and not f.met] == [], measured.notes
+    assert [f for f in measured.figures if f.name in ALL_GOALS and not f.is_met] == [], measured.notes
     assert np.abs(measured.contact_errors).max() < 1.0
 
 
@@ -32,7 +32,7 @@ def test_a_step_across_both_pads_is_a_leap() -> None:
     check(motion)
     body = body_of(motion)
     before = (body.times > 2.1) & (body.times < 2.5)
-    flying = before & ~body.standing.any(axis=1)
+    flying = before & ~body.is_standing.any(axis=1)
     assert flying.sum() >= 6  # both feet are off the ground, at 60 frames per second
     landed = np.argmin(np.abs(body.times - 2.52))
     middles = body.soles[landed].mean(axis=1)

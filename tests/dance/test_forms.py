@@ -94,7 +94,7 @@ def test_she_faces_the_screen_or_turns(motions: dict[str, Motion]) -> None:
 @pytest.mark.parametrize("form", FORMS)
 def test_every_note_is_met_whatever_the_form(motions: dict[str, Motion], form: str) -> None:
     measured = report(motions[form])
-    assert all(measured[name].met for name in ("contact error", "contacts missed", "plant slide"))
+    assert all(measured[name].is_met for name in ("contact error", "contacts missed", "plant slide"))
 
 
 def test_a_form_of_ones_own_and_motion_on_top(tmp_path: Path) -> None:

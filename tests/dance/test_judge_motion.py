@@ -64,7 +64,7 @@ def dance() -> AnimatedDancer:
 
 @pytest.fixture(scope="module")
 def told(dance: AnimatedDancer) -> MotionReport:
-    return report(dance.baked.motion)
+    return report(dance.baked_piece.motion)
 
 
 def judged(tool: SimpleNamespace, dance: AnimatedDancer, motion: Motion, folder: Path) -> Rows:
@@ -160,9 +160,9 @@ def test_it_sees_what_was_spoilt(
 ) -> None:  # fmt: skip
     rows = judged(tool, dance, spoilt(dance.motion), tmp_path)
     assert rows[name].value > least and rows[name].value != pytest.approx(good[name].value, rel=0.1)
-    assert rows[name].met is not True and good[name].met is not False
-    said = report(spoilt(dance.baked.motion))[row]
-    assert said.met is False or (said.goal is None and said.value > least), said
+    assert rows[name].is_met is not True and good[name].is_met is not False
+    said = report(spoilt(dance.baked_piece.motion))[row]
+    assert said.is_met is False or (said.goal is None and said.value > least), said
 
 
 def test_a_wait_has_weight_in_it_and_a_frozen_one_none(tool: SimpleNamespace, tmp_path: Path) -> None:
@@ -176,8 +176,8 @@ def test_a_wait_has_weight_in_it_and_a_frozen_one_none(tool: SimpleNamespace, tm
         rows = {row.name.strip(): row for row in tool.figures.figures(tool.files.read_dance(tmp_path / "wait.bvh"))}
         assert rows["stands of 1.9 s and more"].value == 1
         shifts.append(rows["shift of the weight in them, median"])
-    assert shifts[0].value > 3.0 and shifts[0].met is True
-    assert shifts[1].value < 0.1 and shifts[1].met is False
+    assert shifts[0].value > 3.0 and shifts[0].is_met is True
+    assert shifts[1].value < 0.1 and shifts[1].is_met is False
 
 
 def test_the_table_names_what_is_missed(tool: SimpleNamespace) -> None:

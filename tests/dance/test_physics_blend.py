@@ -169,7 +169,7 @@ def test_a_blend_is_between_its_styles() -> None:
     places = [world_transforms(m.skeleton, m.rotations, m.root)[0][:, hand] - m.root for m in made]
     apart = [float(np.linalg.norm(a - b, axis=1).mean()) for a, b in combinations(places, 2)]
     assert apart[0] < 0.75 * apart[1] > apart[2] and min(apart) > 0.01
-    assert report(made[1])["contact error"].met and report(made[1])["limb in torso"].met
+    assert report(made[1])["contact error"].is_met and report(made[1])["limb in torso"].is_met
 
 
 def _soles(motion: Motion, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -220,7 +220,7 @@ def test_nothing_jumps_where_styles_change(changing: str) -> None:
     measured, plain = report(of(changing)), [report(of(name)) for name in ("lazy", "fierce", "heavy")]
     for figure in ("contact error", "contacts missed", "plant slide", "penetration", "frames past joint limits",
                    "flight residual", "leg in leg", "foot in foot", "limb in torso"):  # fmt: skip
-        assert measured[figure].met, (figure, measured[figure])
+        assert measured[figure].is_met, (figure, measured[figure])
     for part in ("root", "left hand", "right hand", "head"):
         worst = max(one[f"jerk of the {part}"].value for one in plain)
         assert measured[f"jerk of the {part}"].value < 1.2 * worst, part

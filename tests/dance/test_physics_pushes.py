@@ -46,7 +46,7 @@ def test_300_newtons_move_her_and_she_takes_every_note(plain: Motion, undisturbe
     assert away[made.times > WHEN + 1.0].max() < 0.005, "and stands as before"
     measured = report(made)
     for name in ("contact error", "contacts missed", "plant slide", "penetration", "frames past joint limits"):
-        assert measured[name].met, measured[name]
+        assert measured[name].is_met, measured[name]
     assert len(made.contacts) == len(plain.contacts)
     assert made.notes[-1].startswith("pushed at 1.720 s with 300 N: the hips move by ")
     assert made.notes[-1].endswith("; no note is missed")
@@ -67,8 +67,8 @@ def test_nobody_stands_a_shove_of_1500_newtons_and_the_notes_missed_are_named(pl
     for contact in missed:
         assert f"{contact.start:.3f} s column {contact.column} (" in made.notes[-1]
     measured = report(made)
-    assert measured["contact error"].met and measured["contacts missed"].met, "of those that she takes"
-    assert measured["frames past joint limits"].met
+    assert measured["contact error"].is_met and measured["contacts missed"].is_met, "of those that she takes"
+    assert measured["frames past joint limits"].is_met
 
 
 def test_a_held_note_that_a_shove_makes_her_leave_is_missed_and_named() -> None:
@@ -90,7 +90,7 @@ def test_a_caught_foot_is_late_and_she_pitches_ahead(plain: Motion, undisturbed:
     assert max(f.max() for f in feet) > 0.03 and min(f.max() for f in feet) < 0.003, "one foot"
     assert max(f[made.times > WHEN + 1.0].max() for f in feet) < 0.001
     assert "foot is caught; missed: " in made.notes[-1]
-    assert report(made)["contact error"].met and report(made)["penetration"].met
+    assert report(made)["contact error"].is_met and report(made)["penetration"].is_met
 
 
 def test_two_runs_give_the_same_bytes(plain: Motion) -> None:

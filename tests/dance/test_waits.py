@@ -104,7 +104,7 @@ def test_a_body_that_waits_keeps_its_balance_and_its_feet() -> None:
     figures = {f.name: f for f in report(motion).figures}
     for name in ("balance", "plant slide", "jerk of the root", "jerk of the left hand", "frames past joint limits",
                  "limb in torso", "penetration", "contacts missed"):  # fmt: skip
-        assert figures[name].met, f"{name}: {figures[name].value}"
+        assert figures[name].is_met, f"{name}: {figures[name].value}"
     body = body_of(motion)
     for start, end in ((4.0, 7.0), (12.0, 16.0), (20.0, 24.0), (27.0, 31.0)):
         inside = (body.times > start) & (body.times < end)

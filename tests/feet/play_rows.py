@@ -126,7 +126,7 @@ def mirrored_rows(rows: Rows, image: NDArray[np.int64]) -> Rows:
 
 def check_mirror(rows: Rows, pad: Pad, preset: Preset, *, left_right: bool) -> int:
     """Rows with a margin have mirrored limbs; returns how many there are."""
-    image = pad.mirrored(left_right=left_right)
+    image = pad.mirror_columns(left_right=left_right)
     assert image is not None
     found, mirror = solve_rows(rows, pad, preset), solve_rows(mirrored_rows(rows, image), pad, preset)
     assert found.total == mirror.total

@@ -40,7 +40,7 @@ def test_analyze(song: Path) -> None:
     read = load(song)
     (subject,) = solve_selected(read, read.charts, LintRun(LintRequest()).task(song))
     assert limbs(subject.play) == MIRRORED
-    assert subject.ignores.silenced(48, "DS") == (song.parent / "data.sme").exists()
+    assert subject.ignores.is_silenced(48, "DS") == (song.parent / "data.sme").exists()
 
 
 def test_animate(song: Path) -> None:

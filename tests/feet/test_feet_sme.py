@@ -58,9 +58,9 @@ def test_ignores_are_codes_at_beats(tmp_path: Path) -> None:
     _, ignores, problems = SongFeet(song).author_feet(song.charts[0])
     assert problems == ()
     assert ignores.codes == {48: {"DS", "FS"}, 112: {"AM"}}
-    assert ignores.silenced(48, "FS")
-    assert not ignores.silenced(48, "AM")
-    assert not ignores.silenced(49, "FS")
+    assert ignores.is_silenced(48, "FS")
+    assert not ignores.is_silenced(48, "AM")
+    assert not ignores.is_silenced(49, "FS")
 
 
 def test_a_pin_counts_more(tmp_path: Path) -> None:

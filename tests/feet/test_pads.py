@@ -41,7 +41,7 @@ def test_every_pad_fits_its_steps_type_and_is_symmetric(steps_type: str) -> None
     pad = load_pad(steps_type)
     assert pad is not None
     assert len(pad) == COLUMNS[steps_type] == len(set(pad.names))
-    mirror = pad.mirrored(left_right=True)
+    mirror = pad.mirror_columns(left_right=True)
     assert mirror is not None and sorted(mirror) == list(range(len(pad)))
     assert np.allclose(pad.panels[mirror], pad.panels * [-1, 1] + [2 * pad.centre[0], 0])
     assert np.allclose(pad.arrows[mirror], pad.arrows * [-1, 1])

@@ -118,7 +118,7 @@ def wrong(found: str, feet: str) -> list[int]:
 @pytest.mark.parametrize("mirrored", [False, True], ids=["", "mirrored"])
 def test_feet_of_a_pattern(steps_type: str, name: str, picture: str, feet: str, gap: int, mirrored: bool) -> None:
     pad, rows = pad_of(steps_type), rows_of(picture, gap, 150.0)
-    image = pad.mirrored(left_right=True)
+    image = pad.mirror_columns(left_right=True)
     assert image is not None
     if mirrored:
         rows = mirrored_rows(rows, image)

@@ -152,5 +152,5 @@ def test_half_speed_keeps_gravity(demo) -> None:  # type: ignore[no-untyped-def]
     slow = chart.timing.at_rate(0.5)
     motion = bake(slow, as_heard(play, slow), pad, section=(10.0, 40.0))
     measured = report(motion)
-    assert measured["flights"].value > 0 and measured["flight gravity off by"].met
-    assert measured["contact error"].met and measured["contacts missed"].value == 0
+    assert measured["flights"].value > 0 and measured["flight gravity off by"].is_met
+    assert measured["contact error"].is_met and measured["contacts missed"].value == 0

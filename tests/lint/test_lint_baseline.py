@@ -42,7 +42,7 @@ def test_unused_entries_of_analysed_files_are_reported(tmp_path: Path) -> None:
     baseline = Baseline(tmp_path / "b.json").replaced(keys)
     baseline.absorbs(keys[0])
     baseline.mark_seen(str(tmp_path / "x.sm"), CHART, ["DT202"])
-    assert baseline.unused() == [keys[1]]
+    assert baseline.unused_keys() == [keys[1]]
 
 
 def test_an_update_keeps_the_files_that_were_not_analysed(tmp_path: Path) -> None:
@@ -78,7 +78,7 @@ def test_an_update_keeps_entries_of_rules_and_charts_that_were_not_looked_at(tmp
     keys = [("x.sm", CHART, "DT202", 48), ("x.sm", CHART, "DT204", 48), ("x.sm", other, "DT202", 48)]
     baseline = Baseline(tmp_path / "b.json").replaced(keys)
     baseline.mark_seen(str(tmp_path / "x.sm"), CHART, ["DT202"])
-    assert baseline.unused() == keys[:1]
+    assert baseline.unused_keys() == keys[:1]
     assert set(baseline.replaced([]).allowed) == set(keys[1:])
     baseline.mark_all_seen(str(tmp_path / "x.sm"))  # so there is no Easy any more
     assert sorted(baseline.replaced([]).allowed) == keys[1:2]

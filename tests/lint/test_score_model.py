@@ -80,7 +80,7 @@ def test_terms_are_what_charts_of_the_level_do_not_have(tmp_path: Path) -> None:
 
 def test_beyond_what_the_fit_has_seen_nothing_is_added(tmp_path: Path) -> None:
     model = load_score_model(written(tmp_path))
-    most, more = (model.added("dance-single", 1.0, oddities(odd_waits=x))["rhythm"] for x in (0.5, 0.9))
+    most, more = (model.added_levels("dance-single", 1.0, oddities(odd_waits=x))["rhythm"] for x in (0.5, 0.9))
     assert most == more == pytest.approx(1.0)
 
 

@@ -114,7 +114,7 @@ def take_off_for(footing: Footing, time: float, flight: float) -> float:
     feet = footing.feet
     latest = (f.latest(time, footing.settings.step.let_go) for f in feet)
     take_off = min(max(time - flight, *(f.earliest(time) for f in feet)), *latest)
-    return max(take_off, *(f.rested(time) for f in feet))
+    return max(take_off, *(f.rest_time(time) for f in feet))
 
 
 def tuck_for(distance: float, seconds: float, jump: JumpSettings) -> float:
@@ -151,7 +151,7 @@ def leap(row: Row, foot: FootState, goal: tuple[Array, float], columns: list[int
     bound = other.free if in_the_way else max(foot.free, other.free)
     if time - take_off < (jump.leap_flight if in_the_way else jump.gallop_flight) or bound > take_off:
         return None
-    yaw = footing.limited(other.yaw + step.yaw_to_normal * (footing.body_yaw() - other.yaw), footing.body_yaw())
+    yaw = footing.limit_yaw(other.yaw + step.yaw_to_normal * (footing.body_yaw() - other.yaw), footing.body_yaw())
     goals = [goal, goal]
     if in_the_way:
         goals[other.side] = resolve_overlap(

@@ -99,7 +99,7 @@ def landing_place(footing: Footing, foot: FootState, goal: Goal, other: Pose) ->
     wide = min(max((far - step.wide) / max(step.wide_most - step.wide, 1e-9), 0.0), 1.0)
     wide *= far < step.leap + HALF_PANEL  # beyond, the other foot follows
     cut = max(hurry, step.edge, wide * step.wide_inward)
-    yaw = footing.limited(goal.yaw + foot.outward * wide * np.radians(step.wide_turn), footing.body_yaw())
+    yaw = footing.limit_yaw(goal.yaw + foot.outward * wide * np.radians(step.wide_turn), footing.body_yaw())
     toes = footing.toes(foot, yaw)
     beyond = (far - 2 * HALF_PANEL) / max(step.wide - 2 * HALF_PANEL, 1e-9)
     hard = max(goal.haste, min(beyond, 1.0))
@@ -149,7 +149,7 @@ def resolve_overlap(
     if free and crossed <= 0.0 and not over(footing.mined, ball[None], toes, air)[0]:
         return ball, yaw
     balls = spot.centre + spot.room * PLACES * [foot.outward, 1.0]
-    turned = np.array([footing.limited(yaw + foot.outward * turn, footing.body_yaw()) for turn in TURNS])
+    turned = np.array([footing.limit_yaw(yaw + foot.outward * turn, footing.body_yaw()) for turn in TURNS])
     grid, yaws = np.repeat(balls, len(turned), axis=0), np.tile(turned, len(balls))
     gaps = gaps_at(grid, yaws + foot.outward * footing.toe_out, other.ball, other.toes)
     price = np.sum((grid - ball) ** 2, axis=1) / step.place_off**2 + ((yaws - yaw) / np.radians(step.turn_off)) ** 2

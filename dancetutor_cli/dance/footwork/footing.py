@@ -70,7 +70,7 @@ class Row:
         step = self.context.settings.step
         return float(np.clip((step.fast - self.duration) / (step.fast - step.hasty), 0.0, 1.0))
 
-    def following(self, side: int) -> Array | None:
+    def next_place(self, side: int) -> Array | None:
         """Return the place (2,) of the next step of a foot, if it comes soon."""
         second, limb = self.play.rows.second, self.play.limb
         soon = second[self.index] + self.context.settings.step.following
@@ -165,21 +165,21 @@ class FootState:
         foot = self if newest is None else self.split_moves(newest)[1]
         return FootTrack(foot.start, foot.start_toes, foot.moves)
 
-    def holding(self, time: float) -> bool:
+    def is_holding(self, time: float) -> bool:
         """Whether the foot is in the middle of a hold."""
         return any(end > time + FREE_WINDOW for _, end in self.holds)
 
     def latest(self, time: float, lead: float) -> float:
         """When the foot leaves for a note at the latest; a hold that ends too late is released a little early."""
-        late = max(time - SHORTEST_SWING, self.rested(time))
-        early = max(time - lead, self.rested(time))
+        late = max(time - SHORTEST_SWING, self.rest_time(time))
+        early = max(time - lead, self.rest_time(time))
         return min(early, late) if self.free > early else late
 
     def earliest(self, time: float) -> float:
         """Return when the foot may leave for a note: it has come to rest, and no hold needs it."""
-        return max(self.free, self.rested(time))
+        return max(self.free, self.rest_time(time))
 
-    def rested(self, time: float) -> float:
+    def rest_time(self, time: float) -> float:
         """When the foot has come to rest after its last landing, as far as the next landing leaves time for it."""
         gap = time - self.landed
         stand = self.step.stand + self.step.stand_slow * max(gap - self.step.stand_quick, 0.0)
@@ -270,7 +270,7 @@ class Footing:
         low, high = max(left, right) - farthest, min(left, right) + farthest
         return float(np.clip(wanted, min(low, mean), max(high, mean)))
 
-    def limited(self, yaw: float, body: float) -> float:
+    def limit_yaw(self, yaw: float, body: float) -> float:
         """Return a foot's yaw, limited to the angle from the body that hips allow."""
         limit = np.radians(self.settings.step.foot_turn)
         return float(np.clip(yaw, body - limit, body + limit))

@@ -43,7 +43,7 @@ def avoid_mines(row: Row, footing: Footing) -> Proposal:
         f
         for f in footing.feet
         if f.side not in row.pressed
-        and not f.holding(time)
+        and not f.is_holding(time)
         and over(mined, f.ball[None], np.array([footing.toes(f)]), footing.settings.mines.keep_off)[0]
     ]
     if len(threatened) == 2:
@@ -80,7 +80,7 @@ def _home(footing: Footing, foot: FootState) -> tuple[Array, float]:
     nearest = squares[np.argmin(np.round(np.linalg.norm(squares - middle, axis=1), 6))]
     square = round(footing.body_yaw() / (np.pi / 2)) * np.pi / 2
     aside = foot.outward * footing.settings.step.home * np.array([np.cos(square), -np.sin(square)])
-    yaw = footing.limited(square, footing.body_yaw())
+    yaw = footing.limit_yaw(square, footing.body_yaw())
     return ball_of(nearest + aside, footing.toes(foot, yaw)), yaw
 
 

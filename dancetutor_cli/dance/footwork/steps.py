@@ -71,7 +71,7 @@ def jump(row: Row, footing: Footing) -> Proposal:
     share = numbers.flight_share - row.jump_cut * (1.0 - way) * (numbers.flight_share - numbers.flight_near)
     take_off = take_off_for(footing, time, min(float(np.sqrt(8 * apex / GRAVITY)), share * row.duration))
     if latest < take_off:  # over a mine
-        take_off = max(latest, *(f.rested(time) for f in footing.feet))
+        take_off = max(latest, *(f.rest_time(time) for f in footing.feet))
     found = hop(row, footing, take_off, goals, columns, row.turned)
     return replace(found, footing=stayed_up(footing, found.footing, until, take_off))
 
@@ -80,14 +80,14 @@ def _goals(row: Row, footing: Footing, columns: list[list[int]]) -> Goals:
     """Return where both balls land, and the yaws of the feet."""
     body, panels = footing.body_yaw(), row.context.panels
     share = footing.settings.jump.yaw_to_normal
-    yaws = [footing.limited(f.yaw + share * (body - f.yaw), body) for f in footing.feet]
+    yaws = [footing.limit_yaw(f.yaw + share * (body - f.yaw), body) for f in footing.feet]
     goals: dict[int, tuple[Array, float]] = {}
     # a bracket has no choice of its place, so it is first
     for foot in sorted(footing.feet, key=lambda f: (-len(columns[f.side]), f.side != footing.lead)):
         side = 1 - foot.side
         ball, yaw = goals.get(side, (panels[columns[side]].mean(axis=0), yaws[side]))
         other = Pose(ball, footing.toes(footing.feet[side], yaw))
-        wanted = columns[foot.side], row.play.part[row.index], yaws[foot.side], row.jump_cut, row.following(foot.side)
+        wanted = columns[foot.side], row.play.part[row.index], yaws[foot.side], row.jump_cut, row.next_place(foot.side)
         goals[foot.side] = landing_place(footing, foot, Goal(*wanted), other)
     return [goals[0], goals[1]]
 
@@ -103,9 +103,9 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
     footing = _make_room(row, side, footing.with_foot(resuming))
     foot, other = footing.feet[side], footing.feet[1 - side]
     body = footing.body_yaw()
-    wanted = footing.limited(other.yaw + numbers.yaw_to_normal * (body - other.yaw), body)
+    wanted = footing.limit_yaw(other.yaw + numbers.yaw_to_normal * (body - other.yaw), body)
     columns = under_the_foot(row, foot)
-    goal = Goal(columns, row.play.part[row.index], wanted, row.cut, row.following(side), row.haste)
+    goal = Goal(columns, row.play.part[row.index], wanted, row.cut, row.next_place(side), row.haste)
     target, yaw = landing_place(footing, foot, goal, pose(footing, other))
     if _taps_again(row, foot, columns):
         target, yaw = foot.ball, foot.yaw
@@ -148,7 +148,7 @@ def _make_room(row: Row, side: int, footing: Footing) -> Footing:
     """
     foot, other = footing.feet[side], footing.feet[1 - side]
     panel = row.context.panels[row.pressed[side]].mean(axis=0)
-    if row.following(side) is not None or (np.abs(other.ball - panel) > HALF_PANEL).any():
+    if row.next_place(side) is not None or (np.abs(other.ball - panel) > HALF_PANEL).any():
         return footing
     turned = footing.pivot_yaw(other, footing.body_yaw(), foot.ball, footing.toes(foot))
     return footing.pivoted(other, turned, row.time - row.duration, row.time)

@@ -166,7 +166,7 @@ def plant_slides(body: Body, skeleton: Skeleton) -> tuple[float, int]:
     balls = [body.joints[:, skeleton.index(f"{side}_metatarsal")] for side in "lr"]
     for side in (0, 1):
         soles = body.soles[:, side]
-        for first, end in runs(body.standing[:, side]):
+        for first, end in runs(body.is_standing[:, side]):
             if end - first < 3:
                 continue
             piece = soles[first:end]

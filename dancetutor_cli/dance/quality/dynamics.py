@@ -124,7 +124,7 @@ FIT = 0.12  # seconds; the arc of a shorter flight is so flat (under 2 cm) that 
 
 def flight_figures(body: Body) -> tuple[Figure, ...]:
     """G and residual of a parabola fitted to each flight, its apex, and the force on the ground in body weights."""
-    flying = np.asarray(~body.standing.any(axis=1))
+    flying = np.asarray(~body.is_standing.any(axis=1))
     gravity, residual, apex = [], [], []
     height = body.mass[:, 1]
     for first, end in runs(flying):
@@ -150,7 +150,7 @@ def flight_figures(body: Body) -> tuple[Figure, ...]:
 
 def ground_force(body: Body) -> Array:
     """Return the vertical force, body weights, from the centre of mass, at frames on the ground between such frames."""
-    stands = np.asarray(body.standing.any(axis=1))
+    stands = np.asarray(body.is_standing.any(axis=1))
     inner = stands[1:-1] & stands[:-2] & stands[2:]
     acceleration = np.diff(body.mass[:, 1], n=2) * body.rate**2
     return np.asarray((acceleration / GRAVITY + 1.0)[inner])
@@ -193,7 +193,7 @@ def zmp_margin(body: Body, cut: float | None = None) -> Array:
     zmp = zero_moment_point(body, cut)
     soles = body.soles[1:-1].reshape(len(zmp), -1, 3)
     down = soles[..., 1] <= GROUND + 0.004
-    standing = np.asarray(body.standing.any(axis=1))
+    standing = np.asarray(body.is_standing.any(axis=1))
     firm = standing[1:-1] & standing[2:] & standing[:-2]
     out = []
     for k in np.flatnonzero(firm):

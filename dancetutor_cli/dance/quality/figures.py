@@ -30,7 +30,7 @@ class Figure:
     at_least: bool = False
 
     @property
-    def met(self) -> bool | None:
+    def is_met(self) -> bool | None:
         """Whether the goal is met; None without a goal or a value."""
         if self.goal is None or math.isnan(self.value):
             return None
@@ -54,9 +54,9 @@ class MotionReport:
     distances: dict[str, tuple[float, float, float, float]] = field(default_factory=dict)
 
     @property
-    def met(self) -> bool:
+    def is_met(self) -> bool:
         """Whether every goal is met."""
-        return all(f.met is not False for f in self.figures)
+        return all(f.is_met is not False for f in self.figures)
 
     def __getitem__(self, name: str) -> Figure:
         """Return the figure of that name; KeyError lists the names."""
@@ -89,7 +89,7 @@ class Body:
     head: Array
 
     @property
-    def standing(self) -> NDArray[np.bool_]:
+    def is_standing(self) -> NDArray[np.bool_]:
         """Whether each foot has a point on the ground, (f, 2)."""
         return np.asarray(self.soles[..., 1].min(axis=2) <= GROUND)
 

@@ -251,7 +251,7 @@ def jump_knees(body: Body, knees: Array) -> Array:
     The three values are the least as the toes leave, the most in the middle of the flight, and the most after the
     landing.
     """
-    flying = runs(np.asarray(~body.standing.any(axis=1)))
+    flying = runs(np.asarray(~body.is_standing.any(axis=1)))
     mean, frames, out, landed = knees.mean(axis=1), body.rate, [], 0
     for first, end in flying:
         rested, landed = first - landed, end

@@ -106,7 +106,7 @@ class _Passage:
             return tick - since <= most[0] or second[tick] - second[since] <= most[1]
 
         near = within(self.last, JOIN) and second[tick] - second[self.last] < REST and within(self.first, LONGEST)
-        near = near and not table.parted(self.last, tick)
+        near = near and not table.has_uncrossed_jump(self.last, tick)
         short = len(self.kinds) < KINDS and len(", ".join([*self.kinds, name])) <= LETTERS
         return near and move.weight == self.weight and (name in self.kinds or short)
 
@@ -118,7 +118,7 @@ class _Passage:
 
     def text(self) -> str:
         several = self.kinds.values()
-        return ", ".join(some[0].counted(len(some), len({one.text for one in some}) == 1) for some in several)
+        return ", ".join(some[0].text_of(len(some), len({one.text for one in some}) == 1) for some in several)
 
     def why(self) -> str:
         """Return the reason of the moves if they all have the same name and reason, else ""."""
@@ -153,7 +153,7 @@ class _TickTable(NamedTuple):
     second: Mapping[int, float]
     jumps: Sequence[int]
 
-    def parted(self, since: int, tick: int) -> bool:
+    def has_uncrossed_jump(self, since: int, tick: int) -> bool:
         """Whether there is a jump with uncrossed feet between these ticks."""
         return bisect_right(self.jumps, since) < bisect_left(self.jumps, tick)
 

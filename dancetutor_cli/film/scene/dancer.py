@@ -108,7 +108,7 @@ class Dancer:
 
     def view(self, moment: Moment) -> Camera:
         """Return the camera at a moment: the still camera, or the camera that follows the dancer across a wide pad."""
-        return self._follow[moment.rate].at(moment.heard) if self._follow else self.camera
+        return self._follow[moment.rate].at(moment.heard_second) if self._follow else self.camera
 
     def _followers(self, camera: str, size: tuple[int, int], region: Region) -> dict[float, Follow]:
         """Return the camera for each rate that follows the dancer across a wide pad; none from another direction.

@@ -267,10 +267,10 @@ class Batch:
         film.opened = opened
         kept = {number: film.record.digests[number] for number in opened.finished}
         self._keep(film, FilmRecord(opened.key, (film.work,), kept))
-        self.opened(sum(part.last - part.first for part in opened.missing))
+        self.opened(sum(part.last - part.first for part in opened.missing_segments))
         tasks = [
             Task(("segment", number, part.number), render_segment, (opened.plan, part, film.job.encoding), reports=True)
-            for part in opened.missing
+            for part in opened.missing_segments
         ]
         if opened.sound is not None:
             tasks.append(Task(("sound", number), film_jobs.write_sound, (*opened.sound, opened.sound_file)))
@@ -297,7 +297,7 @@ class Batch:
 
     def _remove_useless(self, film: _Film) -> None:
         """Remove the folder of an unfinished film, if no later run can use it."""
-        if film.record.digests and self.records.kept:
+        if film.record.digests and self.records.is_kept:
             return
         remove_work(film.job.output.parent / film.work)
         self._keep(film, replace(film.record, folders=tuple(f for f in film.record.folders if f != film.work)))

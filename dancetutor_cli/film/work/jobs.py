@@ -75,7 +75,7 @@ class OpenedFilm:
     skipped: bool = False
 
     @property
-    def missing(self) -> list[Segment]:
+    def missing_segments(self) -> list[Segment]:
         """The segments that have to be drawn."""
         return [part for part in self.parts if part.number not in self.finished]
 

@@ -73,7 +73,7 @@ class FilmRecords:
         self._folder = folder
 
     @property
-    def kept(self) -> bool:
+    def is_kept(self) -> bool:
         """Whether a later run will find the records."""
         return self._folder is not None
 

@@ -199,7 +199,7 @@ class ScoreModel:
     below: float
     above: float
 
-    def added(self, steps_type: str, level: float, oddities: Oddities) -> dict[str, float]:
+    def added_levels(self, steps_type: str, level: float, oddities: Oddities) -> dict[str, float]:
         """Return the levels that each term adds. Stops and changes of tempo share their levels by their numbers."""
         found: dict[str, float] = {}
         usual, (before, after, part) = self.usual[steps_type], self._place(level)
@@ -228,7 +228,7 @@ class ScoreModel:
 
     def estimate(self, steps_type: str, level: Level, oddities: Oddities) -> ScoreEstimate:
         """Return the estimate with its terms. steps_type : one of the keys of `start`"""
-        added = self.added(steps_type, level.meter, oddities)
+        added = self.added_levels(steps_type, level.meter, oddities)
         base = level.meter + self.start[steps_type]
         meter = base + sum(added.values())
         named = sorted(

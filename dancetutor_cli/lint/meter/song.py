@@ -52,7 +52,7 @@ class Meters:
         chart = subject.chart
         if subject.play is None or not len(subject.step_rows) or chart.player:  # a meter is for both players together
             return
-        found = subject.sized(rate)
+        found = subject.metered_chart(rate)
         if found is not None:
             oddities = subject.oddities() if score_model_for(chart.steps_type) else None
             self._sized[chart.steps_type].append(_SongChart(chart.index, found, oddities))

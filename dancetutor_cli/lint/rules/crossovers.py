@@ -92,7 +92,7 @@ def _walks_over(subject: ChartSubject, row: int) -> bool:
         return False
     rows = subject.step_rows
     at = int(rows.searchsorted(row))
-    around = [subject.pressed(int(one)) for one in rows[max(at - 2 * _WALKED, 0) : at + 2 * _WALKED]]
+    around = [subject.step_columns(int(one)) for one in rows[max(at - 2 * _WALKED, 0) : at + 2 * _WALKED]]
     here = min(at, 2 * _WALKED)
     for way in (1, -1):
         first, last = here, here
@@ -114,9 +114,9 @@ def _in_passing(subject: ChartSubject, row: int) -> bool:
         return False
     rows = subject.step_rows
     at, half = int(rows.searchsorted(row)), len(pad.panels) // 2
-    if at + 1 == len(rows) or feet.crossed(int(rows[at + 1])):
+    if at + 1 == len(rows) or feet.is_crossed(int(rows[at + 1])):
         return False
-    pads = {column < half for one in rows[max(at - _CAME, 0) : at + 1] for column in subject.pressed(int(one))}
+    pads = {column < half for one in rows[max(at - _CAME, 0) : at + 1] for column in subject.step_columns(int(one))}
     return len(pads) > 1
 
 
@@ -208,7 +208,7 @@ class HeldCrossover(TimedRule):
             return
         limbs = subject.play.limb
         for row in self.quick(subject, [first for first, _ in facts.own(facts.candidates.crossed_runs)]):
-            pressed = subject.pressed(row)
+            pressed = subject.step_columns(row)
             foot = int(limbs[row].max())
             if len(pressed) == 1 and foot <= 1 and facts.holds(1 - foot, row):
                 feet = ("left", "right") if foot == 0 else ("right", "left")

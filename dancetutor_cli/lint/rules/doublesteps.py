@@ -125,7 +125,7 @@ def _round_the_centre(subject: ChartSubject, row: int) -> bool:
     if not subject.chart.steps_type.startswith("pump") or subject.pause(row) < _LONG - EPSILON:
         return False
     before = int(rows[int(rows.searchsorted(row)) - 1])
-    return any(column % 5 == 2 for one in (before, row) for column in subject.pressed(one))
+    return any(column % 5 == 2 for one in (before, row) for column in subject.step_columns(one))
 
 
 def _crosses_to_jump(subject: ChartSubject, row: int, quick: float) -> bool:
@@ -136,7 +136,7 @@ def _crosses_to_jump(subject: ChartSubject, row: int, quick: float) -> bool:
     rows = subject.step_rows
     at = int(rows.searchsorted(row))
     last = segment(subject, at, quick, forwards_only=True)[1]
-    if last + 1 >= len(rows) or len(subject.pressed(int(rows[last + 1]))) != 2:
+    if last + 1 >= len(rows) or len(subject.step_columns(int(rows[last + 1]))) != 2:
         return False
     if (subject.facts.down[rows[at : last + 1]] != 1).any() or subject.pause(row) < _CROSSED_RATHER:
         return False
@@ -152,7 +152,7 @@ def any_foot_near(subject: ChartSubject, row: int) -> bool:
     at = int(rows.searchsorted(row))
     for place in range(max(at - _BEFORE, 0), min(at + _AFTER + 1, len(rows))):
         one = int(rows[place])
-        pair = subject.brackets(one) and len(subject.pressed(one)) == 2 and not subject.is_jump(one)
+        pair = subject.brackets(one) and len(subject.step_columns(one)) == 2 and not subject.is_jump(one)
         switched = one < row and "holdswitch" in subject.play.moves[one]
         if pair or switched or (place <= at and subject.beginnings.after_walls[place]):
             return True

@@ -160,7 +160,7 @@ def _dense(subject: ChartSubject, row: int) -> tuple[int, str]:
     rows = subject.step_rows
     at = int(rows.searchsorted(row))
     for place in range(max(at - 2, 0), at + 1):
-        panels = len(subject.pressed(int(rows[place])))
+        panels = len(subject.step_columns(int(rows[place])))
         before = subject.pause(int(rows[place]))
         after = subject.pause(int(rows[place + 1])) if place + 1 < len(rows) else math.inf
         if panels >= 3 and min(before, after) < _SIXTEENTH:
@@ -173,7 +173,7 @@ def _dense(subject: ChartSubject, row: int) -> tuple[int, str]:
             return int(rows[place]), f"{_NUMBERS.get(panels, panels)} panels{among}, {where}"
     for first in (at - 2, at - 1):
         if first >= 0 and first + 2 < len(rows):
-            counts = [len(subject.pressed(int(one))) for one in rows[first : first + 3]]
+            counts = [len(subject.step_columns(int(one))) for one in rows[first : first + 3]]
             apart = max(subject.pause(int(one)) for one in rows[first + 1 : first + 3])
             if counts == [2, 1, 2] and apart < _SIXTEENTH:
                 return row, f"two panels, then one, then two in 16ths, {1000 * apart:.0f} ms apart"

@@ -70,8 +70,8 @@ def _jumped(subject: ChartSubject, row: int) -> bool:
     rows = subject.step_rows
     at = int(rows.searchsorted(row))
     near = [one for one in (at - 1, at + 1) if 0 <= one < len(rows) and subject.pause(int(rows[max(one, at)])) <= _NEAR]
-    pairs = any(len(subject.pressed(int(rows[one]))) > 1 for one in near)
-    return pairs or bool(at and {*subject.pressed(row)} & {*subject.pressed(int(rows[at - 1]))})
+    pairs = any(len(subject.step_columns(int(rows[one]))) > 1 for one in near)
+    return pairs or bool(at and {*subject.step_columns(row)} & {*subject.step_columns(int(rows[at - 1]))})
 
 
 _GIMMICK = 99  # the meter of gimmick charts
@@ -113,15 +113,15 @@ class Unplayable(MoveRule):
     def is_expected(self, subject: ChartSubject, rows: list[int]) -> bool:
         """Whether the chart is a gimmick by its meter or rows, or only a hand comes too late, so a foot may bracket."""
         gimmick = subject.chart.meter == _GIMMICK or any(subject.pause(row) < _SLIP for row in rows)
-        return gimmick or not any(subject.unplayed(row) for row in rows)
+        return gimmick or not any(subject.count_unplayed(row) for row in rows)
 
     def representative(self, subject: ChartSubject, rows: list[int]) -> int:
         """Return the first row with a step for which no limb is free; a hand that comes too late is a lesser fault."""
-        return next((place for place, row in enumerate(rows) if subject.unplayed(row)), 0)
+        return next((place for place, row in enumerate(rows) if subject.count_unplayed(row)), 0)
 
     def message(self, subject: ChartSubject, row: int) -> str:
         """Return the message, with the number of steps for which no limb is free."""
-        if count := subject.unplayed(row):
+        if count := subject.count_unplayed(row):
             return f"no limb is free for {count} step{'s' if count > 1 else ''} of this row"
         return f"a hand would have to come down again within {HAND:g} s"
 
@@ -184,7 +184,7 @@ class Hand(MoveRule):
             return True
         if chart.meter > 1 or subject.play is None:
             return False
-        sized = subject.sized()
+        sized = subject.metered_chart()
         return sized is not None and sized.on.get(_SCALE, 0.0) >= least
 
     def message(self, subject: ChartSubject, row: int) -> str:

@@ -102,7 +102,7 @@ class HiddenNote(ChartRule):
 
     def check(self, subject: ChartSubject) -> Iterable[Finding]:
         """One finding for each run of notes in a warp or a fake segment, at its first note."""
-        for tick, line, count in subject.notes.unjudged():
+        for tick, line, count in subject.notes.unjudged_runs():
             what = "this note is inside" if count == 1 else f"{count} notes are inside"
             yield self.finding(f"{what} a warp or a fake segment, where nothing counts", subject.at_tick(tick, line))
 

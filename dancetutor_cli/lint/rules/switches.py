@@ -76,7 +76,7 @@ def _leads_a_run(subject: ChartSubject, row: int, quick: float) -> bool:
     """Whether enough single steps follow without a rest, each quick and on another panel than the step before."""
     at = int(subject.step_rows.searchsorted(row))
     rows = subject.step_rows[at : at + _RUN + 1].tolist()
-    pressed = [subject.pressed(one) for one in rows]
+    pressed = [subject.step_columns(one) for one in rows]
     return (
         len(rows) > _RUN
         and subject.pause(row) < _LONGER * subject.pause(rows[1])

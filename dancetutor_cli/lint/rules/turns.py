@@ -118,7 +118,7 @@ class Spin(MoveRule):
 
         rows = subject.step_rows
         first = segment(subject, int(rows.searchsorted(row)), self.longest(subject))[0]
-        return int(first > 0 and len(subject.pressed(int(rows[first - 1]))) > 1)
+        return int(first > 0 and len(subject.step_columns(int(rows[first - 1]))) > 1)
 
     def is_expected(self, subject: ChartSubject, rows: list[int]) -> bool:
         """Whether the author means the spins: a Pump chart of twists, steps not in a ring, or steps between mines."""
@@ -150,7 +150,7 @@ def _goes_round(subject: ChartSubject, row: int) -> bool:
         return False
     at = int(rows.searchsorted(row))
     for first in range(max(0, at - 3), min(at, len(rows) - 4) + 1):
-        steps = [subject.pressed(int(one)) for one in rows[first : first + 4]]
+        steps = [subject.step_columns(int(one)) for one in rows[first : first + 4]]
         if any(len(step) != 1 for step in steps):
             continue
         places = pad.panels[[step[0] for step in steps]]

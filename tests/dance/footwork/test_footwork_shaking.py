@@ -94,7 +94,7 @@ def test_she_keeps_her_balance_over_the_other_leg(long: Plan) -> None:
     side, shake = max(shakes(long), key=lambda one: one[1].land - one[1].lift)
     motion = bake(chart().timing, danced(60.0), pad(), section=(shake.lift - 2.0, shake.land + 2.0))
     figures = report(motion)
-    assert [f.name for f in figures.figures if f.met is False] == [], figures.notes
+    assert [f.name for f in figures.figures if f.is_met is False] == [], figures.notes
     body = body_of(motion)
     up = (body.times > shake.lift + 0.2) & (body.times < shake.land - 0.2)
     standing = body.soles[up, 1 - side].mean(axis=1)

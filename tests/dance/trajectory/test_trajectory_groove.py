@@ -120,7 +120,7 @@ def test_shoulders_hands_and_head_take_part_in_jacks_within_the_goals(gap: float
     for joint, more in (("l_shoulder", 1.3), ("r_shoulder", 1.3), ("skullbase", 1.2), ("r_radiocarpal", 1.5)):
         assert moves(after, joint) > more * moves(before, joint), joint
     measured = report(lively)
-    assert [f.name for f in measured.figures if f.met is False] == []
+    assert [f.name for f in measured.figures if f.is_met is False] == []
     assert measured["jerk of the head"].value < 120.0
 
 

@@ -157,7 +157,7 @@ def test_arrows_of_the_highway_point_as_those_of_the_pad_in_the_picture(camera: 
     plan = film_plan(np.arange(1.0, 1.0 + columns), columns=np.arange(columns))
     look = FilmLook(load_layout("side-by-side"), (1280, 720), camera=camera)
     film = Film(replace(plan, look=look, directions=pad.directions))
-    assert film.turned == faces_viewer(look) == (camera != "back")
+    assert film.faces_viewer == faces_viewer(look) == (camera != "back")
     assert film.highway is not None
     scene = Scene(load_dancer(), pad)
     size = (838, 672)

@@ -232,6 +232,6 @@ def test_a_foot_that_steps_twice_has_no_such_reason() -> None:
 
 def test_crossovers_of_both_feet_are_counted_and_the_first_is_reported() -> None:
     left = Phrase("crossover", "left foot crosses in front", "cross in front", "", "{move} ×{count}: first {said}")
-    assert left.counted(1, True) == left.text
-    assert left.counted(3, True) == "left foot crosses in front ×3"
-    assert left.counted(3, False) == "crossover ×3: first left foot crosses in front"
+    assert left.text_of(1, True) == left.text
+    assert left.text_of(3, True) == "left foot crosses in front ×3"
+    assert left.text_of(3, False) == "crossover ×3: first left foot crosses in front"

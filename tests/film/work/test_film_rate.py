@@ -55,7 +55,7 @@ def test_she_falls_in_the_film_as_everybody_does(prepared: PreparedFilm) -> None
     for run, rate in enumerate(RATES):
         (motion,) = prepared.plan.motions[rate]
         moments = [clock.moment(k) for k in range(clock.frames) if clock.at(k)[1] == run]
-        heard = np.array([moment.heard for moment in moments])
+        heard = np.array([moment.heard_second for moment in moments])
         rotations, root = sample(motion, heard)
         mass = centre_of_mass(motion.skeleton, *world_transforms(motion.skeleton, rotations, root))
         falls = np.diff(mass[:, 1], n=2) * FPS**2  # in seconds of the film
