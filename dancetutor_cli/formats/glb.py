@@ -47,7 +47,7 @@ def write_glb(path: Path, character: Character, motion: Motion | None = None) ->
     writer.character(character)
     if motion is not None:
         writer.animation(motion)
-    write_atomic(path, writer.whole())
+    write_atomic(path, writer.to_bytes())
 
 
 class _Writer:
@@ -68,7 +68,7 @@ class _Writer:
         }
         self.textures: dict[int, int] = {}
 
-    def whole(self) -> bytes:
+    def to_bytes(self) -> bytes:
         """Return the whole file."""
         self.doc["buffers"] = [{"byteLength": len(self.binary)}]
         text = json.dumps(self.doc, separators=(",", ":"), ensure_ascii=False).encode("utf-8")

@@ -14,7 +14,7 @@ from dancetutor_cli.feet.limbs import Part, letter
 from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.play import Play, StepKind
 from dancetutor_cli.feet.preset import Preset
-from dancetutor_cli.feet.solver.alternatives import alternatives, blame
+from dancetutor_cli.feet.solver.alternatives import alternatives, doublestep_causes
 from dancetutor_cli.lint.findings import TECH_COUNTS, AlternativeResult, Cause, DifferentRun, ExcerptRow, Finding
 from dancetutor_cli.lint.subject import ChartSubject
 
@@ -75,7 +75,7 @@ def causes_of(subject: ChartSubject, preset: Preset) -> tuple[Cause, ...]:
             round(beats[one.cause_row], 6) if one.cause_row >= 0 else None,
             one.cause_column if one.cause_column >= 0 else None,
         )
-        for one in blame(play, subject.pad, preset)
+        for one in doublestep_causes(play, subject.pad, preset)
     )
 
 

@@ -211,7 +211,7 @@ def fewest_crossed(subject: ChartSubject, row: int, freedom: Freedom) -> float:
     before = int(play.limb[int(rows[first - 1])].argmax()) if first and not anew else _UNKNOWN
     for place, column in enumerate(columns):
         step = _Step(subject, first + place, column, before, freedom)
-        ways = step.taken(ways, free=anew and place == 0)
+        ways = step.stances_after(ways, free=anew and place == 0)
         before = column
     return min(ways.values(), default=math.inf)
 
@@ -278,7 +278,7 @@ class _Step(NamedTuple):
     before: int
     freedom: Freedom
 
-    def taken(self, ways: dict[_Stand, int], *, free: bool) -> dict[_Stand, int]:
+    def stances_after(self, ways: dict[_Stand, int], *, free: bool) -> dict[_Stand, int]:
         """Return the stances after this step, each with its least number of crossed steps.
 
         free : whether either foot may take the step

@@ -82,10 +82,10 @@ class ChartResult:
     @property
     def label(self) -> str:
         """The name of the chart for people: "dance-single Hard 8"; a player's part is "dance-couple Hard 8 P2"."""
-        return f"{self.steps_type} {self.difficulty} {self.meter}{self.whose}"
+        return f"{self.steps_type} {self.difficulty} {self.meter}{self.player_suffix}"
 
     @property
-    def whose(self) -> str:
+    def player_suffix(self) -> str:
         """The player in the label: " P1", " P2" and so on in a chart for several players, else ""."""
         return f" P{self.player}" if self.player else ""
 

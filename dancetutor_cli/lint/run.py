@@ -188,7 +188,11 @@ class LintRun:
 
 
 def _name(chart: ChartResult | None) -> str:
-    return "" if chart is None else f"{chart.steps_type} {chart.difficulty} {chart.description}".strip() + chart.whose
+    return (
+        ""
+        if chart is None
+        else f"{chart.steps_type} {chart.difficulty} {chart.description}".strip() + chart.player_suffix
+    )
 
 
 # Many files: results come from the cache, from this process or from worker processes, always in order.

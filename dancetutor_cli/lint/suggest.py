@@ -65,7 +65,7 @@ def with_suggestions(
     trial = _Trial(subject, _of_families(settings), preset, _places(findings))
     results: list[Finding] = []
     for finding in findings:
-        best = next(trial.good(finding), None) if all_rules()[finding.rule].fixed_by_moves else None
+        best = next(trial.good_edits(finding), None) if all_rules()[finding.rule].fixed_by_moves else None
         results.append(finding if best is None else replace(finding, suggestion=_in_words(best, subject)))
     return tuple(results)
 
@@ -81,7 +81,7 @@ def move_edits(
         return
     ticks = subject.play.rows.tick
     trial = _Trial(subject, _of_families(settings), preset, _places(findings))
-    for edit in trial.good(finding):
+    for edit in trial.good_edits(finding):
         notes = tuple(MovedNote(int(ticks[row]), column, to) for row, column, to in edit.moves)
         yield Suggestion(notes, _in_words(edit, subject))
 
@@ -107,7 +107,7 @@ class _Trial:
     _solved_moves: dict[PanelMove, tuple[int, NDArray[np.int64]]] = field(default_factory=dict)
     _edited: dict[Edit, _Edited] = field(default_factory=dict)
 
-    def good(self, finding: Finding) -> Iterator[Edit]:
+    def good_edits(self, finding: Finding) -> Iterator[Edit]:
         """Yield the edits with a cheaper play that remove the finding and cause no other, the least noticed first.
 
         For a single note, the new cost is checked first, because it is found quickly. Only a few edits are solved and
@@ -126,7 +126,7 @@ class _Trial:
                     return
                 self._edited[edit] = _Edited(self._subject_after(edit), self.settings, self.before)
             edited = self._edited[edit]
-            if edited.is_easier(self.subject, all_rules()[finding.rule].unwanted_move) and edited.lacks(place):
+            if edited.is_easier(self.subject, all_rules()[finding.rule].unwanted_move) and edited.is_improved(place):
                 yield edit
 
     def _candidates(self, finding: Finding) -> Iterator[Edit]:
@@ -193,7 +193,7 @@ class _Edited:
         now, was = _hard_moves(play), _hard_moves(old)
         return play.total < old.total and not now - was and (not move or now[move] < was[move])
 
-    def lacks(self, place: _Place) -> bool:
+    def is_improved(self, place: _Place) -> bool:
         """Whether the finding at a place is gone and no new finding has appeared."""
         self._to_ask.sort(key=lambda code: code != place[0])
         while self._to_ask and place not in self._found and self._found <= self._before:

@@ -38,7 +38,7 @@ def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileC
     charts = sorted([*kept, *(_entry(one) for one in feet)], key=lambda entry: int(entry["index"]))
     files[song.path.name] = {"charts": charts}
     new = _dump(files)
-    why = ((one.chart, lack(path, old, song, one.chart, new)) for one in feet)
+    why = ((one.chart, check_entry(path, old, song, one.chart, new)) for one in feet)
     yield FileChange(path, old, new, tuple(CheckLine(text, chart.line) for chart, text in why if text))
 
 
@@ -54,7 +54,7 @@ def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
     yield removal_of(path, old, _dump(files) if files else None)
 
 
-def lack(path: Path, old: bytes | None, song: Song, chart: Chart, new: bytes) -> str | None:
+def check_entry(path: Path, old: bytes | None, song: Song, chart: Chart, new: bytes) -> str | None:
     """Return the report of `--check` about a chart's entry; None if it is current."""
     entry, wanted = (_find(_files(path, data), song, chart) for data in (old, new))
     if entry == wanted:

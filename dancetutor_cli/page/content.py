@@ -280,7 +280,7 @@ def pack_stage(scene: Scene) -> dict[str, Any]:
         "corner": list(tiles.corner),
         "panel": tiles.panel.tolist(),
         "arrow": tiles.arrow.tolist(),
-        "tall": scene.tall,
+        "tall": scene.dancer_height,
         "sole": SOLE_RADIUS,
         "shadow_fade": list(SHADOW_FADE),
         "ring_share": RING_SHARE,

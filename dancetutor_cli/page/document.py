@@ -70,7 +70,7 @@ class Blob:
         """Return the number of compressed bytes of each array alone, for reports."""
         return {name: len(zlib.compress(data, 1)) for name, data in zip(self.index, self._parts, strict=True)}
 
-    def whole(self) -> bytes:
+    def to_bytes(self) -> bytes:
         """Return the whole block, uncompressed."""
         return b"".join(self._parts)
 
@@ -138,7 +138,7 @@ def document(doc: Mapping[str, Any], blob: Blob, music: bytes | None = None, kin
     """
     full = {**doc, "languages": languages(), "shaders": shaders()}
     head = json.dumps(full, separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode("utf-8")
-    data = base64.b64encode(zlib.compress(struct.pack("<I", len(head)) + head + blob.whole(), 9)).decode("ascii")
+    data = base64.b64encode(zlib.compress(struct.pack("<I", len(head)) + head + blob.to_bytes(), 9)).decode("ascii")
     script = bundle(HERE / "js", {"page": "main"}.get(kind, kind))
     style = (HERE / f"{kind}.css").read_text("utf-8")
     title = " - ".join(part for part in (doc["words"]["title"], doc["words"]["badge"], "dancetutor") if part)

@@ -67,7 +67,9 @@ def entries(result: FileResult) -> Iterator[Entry]:
     path = relative(result.path)
     seen: dict[str, int] = {}
     for finding, chart in result.all_findings():
-        place = "" if chart is None else f"{chart.steps_type}|{chart.difficulty}|{chart.description}{chart.whose}"
+        place = (
+            "" if chart is None else f"{chart.steps_type}|{chart.difficulty}|{chart.description}{chart.player_suffix}"
+        )
         beat = finding.line if finding.beat is None else round(finding.beat * TICKS_PER_BEAT)
         identity = f"{path}|{place}|{beat}|{finding.rule}"
         seen[identity] = seen.get(identity, 0) + 1

@@ -108,7 +108,7 @@ def test_the_camera_shows_all_of_a_tall_character(shared_data: Path) -> None:
     for name in ("back", "front", "side", "three-quarter"):
         assert rogue.camera(name, (1280, 720)).project(head, (1280, 720))[0, 1] > 0
     dancer = Scene(load_character("dancer"), load_pad("dance-single"))
-    assert dancer.tall < min(c.height for c in dancer.look.cameras.values() if not c.feet_only)
+    assert dancer.dancer_height < min(c.height for c in dancer.look.cameras.values() if not c.feet_only)
 
 
 def test_a_character_with_many_joints_is_drawn_without_gl(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,7 @@ from play_rows import letters, pad_of, rows_of
 
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.preset import Preset, load_preset
-from dancetutor_cli.feet.solver.alternatives import Blame, blame
+from dancetutor_cli.feet.solver.alternatives import Blame, doublestep_causes
 from dancetutor_cli.feet.solver.solve import solve_rows
 
 ITG, THESIS = load_preset("itg"), load_preset("thesis")
@@ -20,7 +20,7 @@ SINGLE = pad_of("dance-single")
 def blamed(picture: str, gap: int = 24, preset: Preset = ITG) -> tuple[Play, tuple[Blame, ...]]:
     """The play of a picture at 150 beats a minute, and the causes of its doublesteps."""
     found = solve_rows(rows_of(picture, gap, 150.0), SINGLE, preset)
-    return found, blame(found, SINGLE, preset)
+    return found, doublestep_causes(found, SINGLE, preset)
 
 
 @pytest.mark.parametrize("preset", [ITG, THESIS], ids=["itg", "thesis"])
@@ -77,7 +77,7 @@ def test_every_doublestep_of_busy_rows_has_a_cause(busy_plays: list[Play]) -> No
     """What is named is there, and lies before the doublestep or in its row."""
     seen = set()
     for found in busy_plays:
-        causes = blame(found, SINGLE, ITG)
+        causes = doublestep_causes(found, SINGLE, ITG)
         rows = [i for i, names in enumerate(found.moves) if {"doublestep", "forced-doublestep"} & set(names)]
         assert [one.row for one in causes] == rows
         for one in causes:

@@ -108,11 +108,11 @@ def test_the_sidecar_notices_that_notes_have_changed() -> None:
     old = write(sidecar, None, song, feet_of(song))
     edited = song_of(sm(MEASURES.replace(b"0001", b"0010")))
     new = write(sidecar, old, edited, feet_of(edited))
-    assert "its notes have changed" in str(sidecar.lack(path, old, edited, edited.charts[0], new))
-    assert sidecar.lack(path, new, edited, edited.charts[0], new) is None
+    assert "its notes have changed" in str(sidecar.check_entry(path, old, edited, edited.charts[0], new))
+    assert sidecar.check_entry(path, new, edited, edited.charts[0], new) is None
     # a comment, which an editor may drop, changes nothing
     commented = song_of(sm(MEASURES.replace(b",\n", b", // x\n")))
-    assert sidecar.lack(path, old, commented, commented.charts[0], old) is None
+    assert sidecar.check_entry(path, old, commented, commented.charts[0], old) is None
 
 
 @pytest.mark.parametrize("text", [b"", b"{}", b"[1]", b'{"program": "other", "files": {}}', b"\xff", b'{"files": 3}'])

@@ -75,7 +75,7 @@ def test_arrays_come_back_from_their_planes(differences: int) -> None:
     blob.add("x", values, "i2", differences)
     kind, count, row, rounds, offset = blob.index["x"]
     assert (kind, count, row, rounds, offset) == ("i2", 120, 40, differences, 0)
-    planes = np.frombuffer(blob.whole(), dtype=np.uint8).reshape(2, 120).astype(np.int64)
+    planes = np.frombuffer(blob.to_bytes(), dtype=np.uint8).reshape(2, 120).astype(np.int64)
     raw = planes[0] + 256 * planes[1]
     if differences:
         raw = (raw >> 1) ^ -(raw & 1)  # the sign is the lowest bit

@@ -178,7 +178,7 @@ def _on_one_level(middle: Array, yaw: float, ground: Ground) -> Array:
     return out
 
 
-def room(start: tuple[Array, float], step: Footfall, bulge: Bulge, other: tuple[Array, float]) -> float:
+def shoe_gap(start: tuple[Array, float], step: Footfall, bulge: Bulge, other: tuple[Array, float]) -> float:
     """Return the least distance between a swinging shoe and the standing one, metres."""
     share = smooth(np.linspace(0.1, 1.0, 10))
     way = (share - bulge.late * lag(share))[:, None] * (step.ball - start[0])
@@ -202,7 +202,7 @@ def _as_swings(request: WalkRequest, steps: list[Footfall], first: int, how: Pac
         (ball, yaw), (other, standing) = places[side], places[1 - side]
         way = Way(ball, yaw, step.ball, step.yaw)
         bulge = detour(way, other, standing, context.settings.step, 1.0 - 2.0 * side)
-        least = min(least, room(places[side], step, bulge, places[1 - side]))
+        least = min(least, shoe_gap(places[side], step, bulge, places[1 - side]))
         level = ground.level(*middle_of(step.ball, step.yaw))
         edge = abs(level - ground.level(*middle_of(ball, yaw))) > 0.0
         target = (float(step.ball[0]), float(step.ball[1]))

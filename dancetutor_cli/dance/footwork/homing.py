@@ -10,7 +10,7 @@ import numpy as np
 
 from dancetutor_cli.dance.clearance import Way, detour
 from dancetutor_cli.dance.context import Context
-from dancetutor_cli.dance.footwork.footfalls import Footfall, Stand, current_stand, room, stand_at
+from dancetutor_cli.dance.footwork.footfalls import Footfall, Stand, current_stand, shoe_gap, stand_at
 from dancetutor_cli.dance.footwork.foothold import Pose, legs_crossed
 from dancetutor_cli.dance.footwork.footing import Footing, Proposal, Row
 from dancetutor_cli.dance.footwork.walks import (
@@ -120,7 +120,7 @@ def _way(begin: Stand, goal: Stand, count: int, first: int, settings: MotionSett
         if abs(fall.yaw - yaw) > most:
             return None
         bulge = _bulge(places, side, fall, settings.step)
-        least = min(least, room(places[side], fall, bulge, other))
+        least = min(least, shoe_gap(places[side], fall, bulge, other))
         toes = np.array([fall.yaw])
         crossed += float(legs_crossed(outward, fall.ball[None], toes, Pose(*other), heading, settings.step)[0])
         places[side] = (fall.ball, fall.yaw)

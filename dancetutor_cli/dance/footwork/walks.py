@@ -17,7 +17,7 @@ from dancetutor_cli.dance.footwork.footfalls import (
     WalkSteps,
     current_stand,
     footsteps,
-    room,
+    shoe_gap,
     stand_at,
 )
 from dancetutor_cli.dance.footwork.foothold import around, heel_of_step, heel_up
@@ -308,7 +308,7 @@ class SideSteps(StepsInWaits):
         """Whether no shoe comes too near the other."""
         places = [(ball, float(yaw)) for ball, yaw in zip(begin.balls, begin.yaws, strict=True)]
         for side, fall in falls:
-            if room(places[side], fall, STRAIGHT, places[1 - side]) < self.settings.step.apart:
+            if shoe_gap(places[side], fall, STRAIGHT, places[1 - side]) < self.settings.step.apart:
                 return False
             places[side] = (fall.ball, fall.yaw)
         return True

@@ -69,10 +69,10 @@ def part_knees(skeleton: Skeleton, hung: Hung, poles: Array, knees: KneeSettings
     near, most = np.arange(len(poles)), np.radians(knees.give)
     given = np.zeros((len(poles), 2))
     for _ in range(KNEE_ROUNDS):
-        legs = both.some(near)
+        legs = both.at_frames(near)
         deep = legs.depth(given[near])
         close = deep > -LOOKED
-        near, legs, deep = near[close], legs.some(close), deep[close]
+        near, legs, deep = near[close], legs.at_frames(close), deep[close]
         if not len(near):
             break
         slope = np.stack([legs.depth(given[near] + TRIED * one) - deep for one in np.eye(2)], axis=1) / TRIED
@@ -90,7 +90,7 @@ class Legs:
     poles: Array
     bones: tuple[float, float]
 
-    def some(self, keep: NDArray[np.bool_] | NDArray[np.int64]) -> Legs:
+    def at_frames(self, keep: NDArray[np.bool_] | NDArray[np.int64]) -> Legs:
         """Return the legs of some frames."""
         return Legs(self.hips[keep], self.ankles[keep], self.poles[keep], self.bones)
 

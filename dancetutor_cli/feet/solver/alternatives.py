@@ -212,7 +212,7 @@ class Blame:
     cause_column: int = -1
 
 
-def blame(play: Play, pad: Pad, preset: Preset) -> tuple[Blame, ...]:
+def doublestep_causes(play: Play, pad: Pad, preset: Preset) -> tuple[Blame, ...]:
     """Return the causes of all doublesteps of a play, forced or not, in the order of rows."""
     out = []
     holds: dict[int, NDArray[np.int64]] = {}

@@ -98,7 +98,7 @@ class _Passage:
     weight: int = 0
     moves: list[_Move] = field(default_factory=list)
 
-    def takes(self, move: _Move, table: _TickTable) -> bool:
+    def accepts(self, move: _Move, table: _TickTable) -> bool:
         """Whether a move belongs to this passage."""
         second, tick, name = table.second, move.first, move.phrase.move
 
@@ -120,7 +120,7 @@ class _Passage:
         several = self.kinds.values()
         return ", ".join(some[0].text_of(len(some), len({one.text for one in some}) == 1) for some in several)
 
-    def why(self) -> str:
+    def reason(self) -> str:
         """Return the reason of the moves if they all have the same name and reason, else ""."""
         found = {move.phrase.why for move in self.moves}
         return found.pop() if len(found) == 1 and len(self.kinds) == 1 else ""
@@ -196,7 +196,7 @@ def callouts_of(
     table = _TickTable(seconds, [] if play is None else _jumps(play))
     passages: list[_Passage] = []
     for move in sorted(found):
-        here = next((p for p in reversed(passages[-2:]) if p.takes(move, table)), None)
+        here = next((p for p in reversed(passages[-2:]) if p.accepts(move, table)), None)
         if here is None:
             here = _Passage(move.first, move.last, weight=move.weight)
             passages.append(here)
@@ -223,7 +223,7 @@ def callouts_of(
             float(end),
             passage.tag(len(passage.further(seconds))),
             tuple(further(passage)),
-            passage.why(),
+            passage.reason(),
         )
         for passage, start, beat, begin, end in zip(passages, starts, beats, begins, ends, strict=True)
     )

@@ -80,7 +80,7 @@ def _nearer(scene: Scene, name: str, size: tuple[int, int], region: Region) -> C
     middle, half = (low + high) / 2, 1.5 * PANEL
     square = low.copy(), high.copy()
     square[0][0], square[1][0] = middle[0] - half, middle[0] + half
-    return preset(name, square, size, scene.look, region, scene.tall)
+    return preset(name, square, size, scene.look, region, scene.dancer_height)
 
 
 def _along(scene: Scene, camera: Camera, size: tuple[int, int], across: Array) -> tuple[Camera, Array]:

@@ -157,10 +157,10 @@ class Scene:
 
     def camera(self, text: str, size: tuple[int, int], region: Region = WHOLE) -> Camera:
         """Return a camera by name or ``x,y,z/x,y,z`` for a picture of that size; the dancer fills `region` (0..1)."""
-        return parse(text, self.extent, size, self.look, region, self.tall)
+        return parse(text, self.extent, size, self.look, region, self.dancer_height)
 
     @property
-    def tall(self) -> float:
+    def dancer_height(self) -> float:
         """The height that the dancer needs above the ground, metres: her own height and a jump."""
         return float(rest_vertices(self.character)[:, 1].max()) + _JUMP
 
