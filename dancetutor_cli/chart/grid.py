@@ -194,12 +194,7 @@ class Grid:
                 foreign.setdefault(what, []).append(int(line[row]))
             for finding in found:
                 findings.setdefault(finding, []).append(int(line[row]))
-        if part.of_players:
-            foreign.pop("X", None)
-        for what, found_at in foreign.items():
-            message = f"{TEXTS[what]}: {plural(len(found_at), 'row')}"
-            code = "stepmaniax-note" if what == "D" else "stepf2-note"
-            part.warnings.append(ReadWarning(code, message, found_at[0]))
+        _add_foreign(part, foreign)
         for (code, text), found_at in findings.items():
             add_warnings(part.warnings, code, text, np.array(found_at))
         for which, code, text in (
@@ -208,6 +203,16 @@ class Grid:
         ):
             add_warnings(part.warnings, code, text, line[which].astype(np.int64))
         return kinds
+
+
+def _add_foreign(part: NoteSpan, foreign: dict[str, list[int]]) -> None:
+    """Add a warning for each kind of letter of other games. foreign : kind -> the lines that have it"""
+    if part.of_players:
+        foreign.pop("X", None)
+    for what, found_at in foreign.items():
+        message = f"{TEXTS[what]}: {plural(len(found_at), 'row')}"
+        code = "stepmaniax-note" if what == "D" else "stepf2-note"
+        part.warnings.append(ReadWarning(code, message, found_at[0]))
 
 
 def _pieces(

@@ -51,7 +51,7 @@ from dancetutor_cli.run.trust import results_folder
 
 if TYPE_CHECKING:
     from dancetutor_cli.lint.analysis import AnalyzeTask
-    from dancetutor_cli.lint.results import FileResult
+    from dancetutor_cli.lint.results import FileResult, ResultCache
     from dancetutor_cli.lint.run import LintRequest, LintRun
 
 
@@ -281,7 +281,6 @@ def _run(run: LintRun, files: list[Source], options: AnalyzeOptions) -> int:
 
 def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO[str]) -> int:
     """Analyze all files and write the report. Returns the exit status."""
-    from dancetutor_cli.lint.results import ResultCache, default_folder
     from dancetutor_cli.lint.run import analyze_all
 
     first = files[0][0]
@@ -296,10 +295,7 @@ def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO
     report = open_report(view, Output(output, preset=preset, files=len(tasks)))
     report.begin()
     is_for_several = False
-    kept = None if options.no_cache else default_folder()
-    cache = None if kept is None else ResultCache(kept)
-    if not options.no_cache and not options.quiet and (fault := results_folder()[1]):
-        note(f"{fault}: results are not stored")
+    cache = _open_cache(options)
     for raw in run.with_packs(analyze_all(tasks, options.jobs, cache, _before_work)):
         result = run.without_baseline(raw)
         tally.add(result)
@@ -307,8 +303,8 @@ def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO
         pack.add(raw)
         if (reported := _reported_part(result, run, options, tally)) is not None:
             report.add(reported)
-    selection = run.request.selection
-    none_matches = not tally.charts and not tally.unreadable and bool(tally.unselected or selection.player)
+    player = run.request.selection.player
+    none_matches = not tally.charts and not tally.unreadable and bool(tally.unselected or player)
     tally.quiet |= none_matches  # the error is enough
     tally.page += pack.lines()
     if options.statistics and options.format_name == "text":
@@ -322,10 +318,20 @@ def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO
     _finish(run, tally, options)
     if none_matches:
         has = f"; the file has {', '.join(tally.unselected[:20])}" if len(files) == 1 and tally.unselected else ""
-        raise UsageError(f"no chart matches {selection.options}{has}")
-    if (player := selection.player) is not None and not is_for_several and not options.quiet:
+        raise UsageError(f"no chart matches {run.request.selection.options}{has}")
+    if player is not None and not is_for_several and not options.quiet:
         note(f"--player {player} has no effect: every chart here is for one player")
     return tally.exit_status
+
+
+def _open_cache(options: AnalyzeOptions) -> ResultCache | None:
+    """Return the store of results; None with --no-cache, or where nothing can be stored, which is a note."""
+    from dancetutor_cli.lint.results import ResultCache, default_folder
+
+    kept = None if options.no_cache else default_folder()
+    if not options.no_cache and not options.quiet and (fault := results_folder()[1]):
+        note(f"{fault}: results are not stored")
+    return None if kept is None else ResultCache(kept)
 
 
 def _check_ffmpeg(tasks: list[AnalyzeTask]) -> None:

@@ -27,7 +27,7 @@ from dancetutor_cli.run.languages import ENGLISH
 if TYPE_CHECKING:
     from dancetutor_cli.film.choices import Quality, RendererKind
     from dancetutor_cli.film.clock import Practice
-    from dancetutor_cli.film.layout import Layout
+    from dancetutor_cli.film.layout import FilmLook, Layout
     from dancetutor_cli.film.media.encoder import FilmFormat
     from dancetutor_cli.film.work.request import FilmRequest
 
@@ -188,9 +188,7 @@ def film_request(
     """Return the request of these options. Raises UsageError for a wrong option."""
     from dancetutor_cli.character.characters import check_character
     from dancetutor_cli.dance.request import with_style
-    from dancetutor_cli.film.layout import FilmLook, load_layout
-    from dancetutor_cli.film.media.encoder import even_size
-    from dancetutor_cli.film.scroll import parse_scroll
+    from dancetutor_cli.film.layout import load_layout
     from dancetutor_cli.film.work.request import FilmRequest
 
     layout = load_layout(options.layout or ("background" if options.background else "side-by-side"))
@@ -198,31 +196,7 @@ def film_request(
         raise UsageError(
             "--background is the dancer alone, the game draws the notes: choose a layout without a highway"
         )
-    if options.font is not None:
-        from dancetutor_cli.film.overlay.text import font
-
-        font(str(options.font), 24)  # raises an error for a wrong font before the work begins
-    from dancetutor_cli.film.overlay.text import check_letters
-
-    check_letters(options.language, options.font)
-    wanted = options.size or _default_size(layout.size, film_format)
-    size = even_size(wanted) if film_format.h264 else wanted
-    if size != wanted:
-        note(f"{wanted[0]}x{wanted[1]} becomes {size[0]}x{size[1]}; H.264 needs even numbers")
-    scroll = parse_scroll(options.scroll) if options.scroll else None
-    look = FilmLook(
-        layout=layout,
-        size=size,
-        quality=options.quality,
-        renderer=options.renderer,
-        camera=options.camera,
-        scroll=scroll,
-        down=options.down,
-        font=options.font,
-        ahead=parse_ahead(options.call_ahead) if options.call_ahead else None,
-        findings=options.show_findings,
-        language=options.language,
-    )
+    look = _film_look(options, layout, film_format)
     return FilmRequest(
         with_style(replace(dance.request(file, selection), rates=_rates(options, layout))),
         look,
@@ -234,6 +208,35 @@ def film_request(
         character=check_character(options.character),
         background=options.background,
         motions=options.motions,
+    )
+
+
+def _film_look(options: RenderOptions, layout: Layout, film_format: FilmFormat) -> FilmLook:
+    """Return the look of the film. Raises UsageError for a font without the letters of the language, or no font."""
+    from dancetutor_cli.film.layout import FilmLook
+    from dancetutor_cli.film.media.encoder import even_size
+    from dancetutor_cli.film.overlay.text import check_letters, font
+    from dancetutor_cli.film.scroll import parse_scroll
+
+    if options.font is not None:
+        font(str(options.font), 24)  # raises an error for a wrong font before the work begins
+    check_letters(options.language, options.font)
+    wanted = options.size or _default_size(layout.size, film_format)
+    size = even_size(wanted) if film_format.h264 else wanted
+    if size != wanted:
+        note(f"{wanted[0]}x{wanted[1]} becomes {size[0]}x{size[1]}; H.264 needs even numbers")
+    return FilmLook(
+        layout=layout,
+        size=size,
+        quality=options.quality,
+        renderer=options.renderer,
+        camera=options.camera,
+        scroll=parse_scroll(options.scroll) if options.scroll else None,
+        down=options.down,
+        font=options.font,
+        ahead=parse_ahead(options.call_ahead) if options.call_ahead else None,
+        findings=options.show_findings,
+        language=options.language,
     )
 
 

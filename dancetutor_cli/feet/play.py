@@ -165,28 +165,37 @@ def prepare_all(charts: Sequence[Chart], pad: Pad, roll_window: float) -> list[R
         row = known.searchsorted(tick)
     else:
         row = np.cumsum(new) - 1
-    n = len(known)
-    cell = row * c + column
-    steps = np.zeros(n * c, dtype=np.uint8)
+    cells = np.zeros(len(known) * c, dtype=np.uint8)
     if len(rolls):
-        steps[known.searchsorted(roll_tick) * c + roll_column] = StepKind.ROLL_TAP
-    step = np.flatnonzero(kind)
-    steps[cell[step]] = kind[step]  # a real note replaces a virtual tap
-    hold_end = np.full(n * c, -1, dtype=np.int64)
-    hold = np.flatnonzero(kind == _HOLD)
-    hold_end[cell[hold]] = notes.end[here[hold]]
-    mines = np.zeros(n * c, dtype=bool)
-    mines[cell[kind == 0]] = True
-    line = np.zeros(n, dtype=np.int32)
+        cells[known.searchsorted(roll_tick) * c + roll_column] = StepKind.ROLL_TAP
+    steps, hold_end, mines = _cells(cells, row * c + column, kind, notes.end[here])
+    line = np.zeros(len(known), dtype=np.int32)
     line[row] = written
     first = known.searchsorted(np.arange(len(charts) + 1) << _CHART)
     ticks = known & _TICK
     second = timing.seconds(ticks)
     whole = Rows(
-        ticks, second, line, steps.reshape(n, c), hold_end.reshape(n, c), mines.reshape(n, c),
+        ticks, second, line, steps.reshape(-1, c), hold_end.reshape(-1, c), mines.reshape(-1, c),
         timing.milliseconds(ticks, second, first),
     )  # fmt: skip
     return [Rows(*(getattr(whole, name)[a:b] for name in Rows.__slots__)) for a, b in pairwise(first.tolist())]
+
+
+def _cells(
+    taps: NDArray[np.uint8], cell: NDArray[np.int64], kind: NDArray[np.uint8], end: NDArray[np.int64]
+) -> tuple[NDArray[np.uint8], NDArray[np.int64], NDArray[np.bool_]]:
+    """Return `Rows.steps`, `hold_end` and `mines` of all cells (n * c,).
+
+    taps : the virtual taps of rolls, (n * c,), which real notes replace; cell, kind, end : the cell of each note, its
+    `StepKind` (0: a mine) and the tick of its end
+    """
+    step, hold = np.flatnonzero(kind), np.flatnonzero(kind == _HOLD)
+    taps[cell[step]] = kind[step]
+    hold_end = np.full(len(taps), -1, dtype=np.int64)
+    hold_end[cell[hold]] = end[hold]
+    mines = np.zeros(len(taps), dtype=bool)
+    mines[cell[kind == 0]] = True
+    return taps, hold_end, mines
 
 
 def _joined(tables: Sequence[NoteTable]) -> NoteTable:

@@ -29,7 +29,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from dancetutor_cli.dance.motion import Bar, Grip
+from dancetutor_cli.dance.motion import Bar, Contact, Grip
 from dancetutor_cli.dance.plan import (
     FootTrack,
     Gallop,
@@ -87,24 +87,24 @@ def moves_data(
             for t in plan.turns
             if start <= t.start <= end
         ],
-        "contacts": [
-            {
-                "limb": Limb(c.limb).name.lower(),
-                "kind": StepKind(c.kind).name.lower(),
-                "part": None if c.part == Part.WHOLE else Part(c.part).name.lower(),
-                "column": c.column,
-                "start": _round(c.start),
-                "end": _round(c.end),
-                "panel": _place(c.panel),
-            }
-            for c in plan.contacts
-            if start <= c.start <= end
-        ],
+        "contacts": [_contact(c) for c in plan.contacts if start <= c.start <= end],
         "let_go": [
             {"second": _round(one.second), "column": one.column, "why": one.reason.name.lower()}
             for one in plan.dropped
             if start <= one.second <= end
         ],
+    }
+
+
+def _contact(contact: Contact) -> dict[str, Any]:
+    return {
+        "limb": Limb(contact.limb).name.lower(),
+        "kind": StepKind(contact.kind).name.lower(),
+        "part": None if contact.part == Part.WHOLE else Part(contact.part).name.lower(),
+        "column": contact.column,
+        "start": _round(contact.start),
+        "end": _round(contact.end),
+        "panel": _place(contact.panel),
     }
 
 

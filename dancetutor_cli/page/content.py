@@ -56,17 +56,7 @@ def pack_body(blob: Blob, character: Character, bar: Bar | None, floor: float, p
     """
     whole = with_bar(character, bar, floor)
     mesh = pack(whole)
-    low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
-    size = np.maximum(high - low, 1e-6)
-    place = np.rint((mesh.positions - low) / size * 65535)
-    blob.add("mesh.position", place.T, "u2", 1)
-    for name, values in (("normal", mesh.normals), ("hull", mesh.hull)):
-        blob.add(f"mesh.{name}", np.rint(np.clip(values, -1, 1) * 127).T, "i1")
-    span = np.array([mesh.uv.min(axis=0), np.maximum(np.ptp(mesh.uv, axis=0), 1e-6)])
-    blob.add("mesh.uv", np.rint((mesh.uv - span[0]) / span[1] * 65535).T, "u2", 1)
-    blob.add("mesh.joints", mesh.joints.T, "u1")
-    blob.add("mesh.above", np.rint(mesh.above * (255 / ABOVE)), "u1")
-    blob.add("mesh.weights", _bytes_that_sum(mesh.weights).T, "u1")
+    ranges = _add_vertices(blob, mesh)
     triangles, side = _by_side(mesh, whole.skeleton)
     blob.add("mesh.triangles", triangles.T, "u4", 1)
     skins = [mesh.skins, *([pack(with_bar(partner_of(character), bar, floor)).skins] if pair else [])]
@@ -79,9 +69,7 @@ def pack_body(blob: Blob, character: Character, bar: Bar | None, floor: float, p
     if bar is not None:
         parents[skeleton.index(JOINT)], offsets[skeleton.index(JOINT)] = STILL, bar_matrix(bar)[:3, 3]
     return {
-        "low": low.tolist(),
-        "size": size.tolist(),
-        "uv": span.tolist(),
+        **ranges,
         "vertices": len(mesh.positions),
         "above": ABOVE,
         "skins": len(images),
@@ -104,6 +92,22 @@ def pack_body(blob: Blob, character: Character, bar: Bar | None, floor: float, p
         "inverseBind": whole.inverse_bind[:, :3].reshape(len(parents), 12).round(7).tolist(),
         "marks": marks(character.skeleton),
     }
+
+
+def _add_vertices(blob: Blob, mesh: PackedMeshes) -> dict[str, Any]:
+    """Add the vertices of a mesh to the blob and return the ranges of positions and texture coordinates."""
+    low, high = mesh.positions.min(axis=0), mesh.positions.max(axis=0)
+    size = np.maximum(high - low, 1e-6)
+    place = np.rint((mesh.positions - low) / size * 65535)
+    blob.add("mesh.position", place.T, "u2", 1)
+    for name, values in (("normal", mesh.normals), ("hull", mesh.hull)):
+        blob.add(f"mesh.{name}", np.rint(np.clip(values, -1, 1) * 127).T, "i1")
+    span = np.array([mesh.uv.min(axis=0), np.maximum(np.ptp(mesh.uv, axis=0), 1e-6)])
+    blob.add("mesh.uv", np.rint((mesh.uv - span[0]) / span[1] * 65535).T, "u2", 1)
+    blob.add("mesh.joints", mesh.joints.T, "u1")
+    blob.add("mesh.above", np.rint(mesh.above * (255 / ABOVE)), "u1")
+    blob.add("mesh.weights", _bytes_that_sum(mesh.weights).T, "u1")
+    return {"low": low.tolist(), "size": size.tolist(), "uv": span.tolist()}
 
 
 def marks(skeleton: Skeleton) -> list[dict[str, Any] | None]:

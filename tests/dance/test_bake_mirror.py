@@ -115,4 +115,4 @@ def test_the_mirror_sees_a_difference() -> None:
     assert apart(motion, mirrored_motion(motion))["legs"][0] > 50.0
     moved = replace(motion, root=motion.root + np.array([0.002, 0.0, 0.0]))
     assert apart(motion, moved)["root"][0] == pytest.approx(2.0)
-    assert load_pad("dance-single").mirrored(left_right=True).tolist() == SINGLE.tolist()  # type: ignore[union-attr]
+    assert load_pad("dance-single").mirror_columns(left_right=True).tolist() == SINGLE.tolist()  # type: ignore[union-attr]

@@ -106,12 +106,12 @@ def test_rules_are_asked_until_one_decides(tmp_path: Path) -> None:
     spin = next(finding for finding in check_chart(subject, settings) if finding.rule == "DT202")
     edited = _Edited(subject, settings, {("DT202", spin.beat)})
     asked = len(edited._to_ask)
-    assert not edited.lacks(("DT202", spin.beat))
+    assert not edited.is_improved(("DT202", spin.beat))
     assert len(edited._to_ask) == asked - 1 and "DT202" not in edited._to_ask
-    assert not edited.lacks(("DT201", 0.0))  # the other spins are new to it
+    assert not edited.is_improved(("DT201", 0.0))  # the other spins are new to it
     assert len(edited._to_ask) == asked - 1
     other = _Edited(subject, settings, set())
-    assert not other.lacks(("DT209", 0.0)) and other._to_ask
+    assert not other.is_improved(("DT209", 0.0)) and other._to_ask
 
 
 @pytest.mark.parametrize("preset", ["itg", "thesis", "pump"])

@@ -131,26 +131,20 @@ def simulate(
     ------
     DancetutorError with time and joint where the simulation fails.
     """
-    mujoco, bones, points = engine(), ragdoll.bones, ragdoll.points
-    model = build(ragdoll.skeleton, bones, points, ragdoll.style, "".join(a.constraints for a in actors))
+    mujoco, bones = engine(), ragdoll.bones
+    model = build(ragdoll.skeleton, bones, ragdoll.points, ragdoll.style, "".join(a.constraints for a in actors))
     data = mujoco.MjData(model)
     joints = [bone.joint for bone in bones]
     poses = pose_of(bones, rotations[:2, joints], root[:2])
     data.qpos[:] = poses[0]
     mujoco.mj_differentiatePos(model, data.qvel, float(model.opt.timestep), poses[0], poses[-1])
     rate = ragdoll.style.body.update_rate
-    gains = [p.gains(ragdoll.style) for p in points]
-    kp, kd = (np.array([g[k] for g in gains]) for k in (0, 1))
     forces = _forces(ragdoll)
     out = np.empty((len(root), model.nq))
     pelvis = data.xfrc_applied[1:]
     for first in range(0, len(root), PIECE):
         last = min(first + PIECE, len(root))
-        low, high = max(first - 1, 0), min(last + 1, len(root))
-        places = place_points(ragdoll.skeleton, bones, points, rotations[low:high], root[low:high])
-        speed = np.gradient(places, 1.0 / rate, axis=0) if len(places) > 1 else np.zeros_like(places)
-        part = slice(first - low, last - low)
-        pull, drag = ((k * v)[part].reshape(last - first, -1) for k, v in ((kp, places), (kd, speed)))
+        pull, drag = _pulls(ragdoll, rotations, root, (first, last))
         pushed = quat.rotate(rotations[first:last, joints[0]][:, None], forces)
         for step in range(first, last):
             out[step] = data.qpos
@@ -168,6 +162,22 @@ def simulate(
     turned = rotations.copy()
     turned[:, joints] = turns_of(bones, out)
     return turned, out[:, :3].copy()
+
+
+def _pulls(ragdoll: Ragdoll, rotations: Array, root: Array, frames: tuple[int, int]) -> tuple[Array, Array]:
+    """Return the parts kp x_target and kd x_target' of the force on each point, newtons, from a frame to another.
+
+    Each is (n, p) for n frames and the 3 coordinates of all points, one after the other.
+    """
+    first, last = frames
+    low, high = max(first - 1, 0), min(last + 1, len(root))
+    places = place_points(ragdoll.skeleton, ragdoll.bones, ragdoll.points, rotations[low:high], root[low:high])
+    rate = ragdoll.style.body.update_rate
+    speed = np.gradient(places, 1.0 / rate, axis=0) if len(places) > 1 else np.zeros_like(places)
+    gains = [p.gains(ragdoll.style) for p in ragdoll.points]
+    kp, kd = (np.array([g[k] for g in gains]) for k in (0, 1))
+    part = slice(first - low, last - low)
+    return (kp * places)[part].reshape(last - first, -1), (kd * speed)[part].reshape(last - first, -1)
 
 
 def _forces(ragdoll: Ragdoll) -> Array:

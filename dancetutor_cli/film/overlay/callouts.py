@@ -180,27 +180,11 @@ def callouts_of(
 
     about : the chart; play : the play of the part that the picture shows; on_mines : the mines under a foot
     """
-    ticks = () if play is None else play.rows.tick[(play.limb == Limb.UNPLAYED).any(axis=1)].tolist()
-    mined = sorted({one.tick for one in on_mines}) if MINE in style.words else []
-    notices = list(_notices(about.findings(), style)) if style.findings or ticks or mined else []
-    why = {} if style.findings else dict(_reasons(ticks, notices))
-    under = {} if style.findings else {notice.tick: notice.text for notice in notices if notice.rule == _OF_MINES}
-    found = list(_moves(about.pad, play, style, why))
-    if style.findings:
-        found += (_Move(notice.tick, notice.tick, plain(notice.text), notice.weight) for notice in notices)
-    mine = style.words.get(MINE, "")
-    found += (_Move(tick, tick, plain(mine + (f" ({under[tick]})" if tick in under else ""))) for tick in mined)
     timing = about.chart.timing
+    found = _called_moves(about, play, style, on_mines)
     asked = sorted({tick for move in found for tick in move[:2]})
     seconds = dict(zip(asked, timing.seconds(np.array(asked, dtype=np.int64)).tolist(), strict=True))
-    table = _TickTable(seconds, [] if play is None else _jumps(play))
-    passages: list[_Passage] = []
-    for move in sorted(found):
-        here = next((p for p in reversed(passages[-2:]) if p.accepts(move, table)), None)
-        if here is None:
-            here = _Passage(move.first, move.last, weight=move.weight)
-            passages.append(here)
-        here.add(move)
+    passages = _passages(found, _TickTable(seconds, [] if play is None else _jumps(play)))
     ticks = np.array([(p.first, p.last) for p in passages], dtype=np.int64).reshape(-1, 2)
     starts, ends = timing.seconds(ticks[:, 0]), timing.seconds(ticks[:, 1])
     beats = scrolls.drawn_beats(ticks[:, 0] / TICKS_PER_BEAT)
@@ -227,6 +211,35 @@ def callouts_of(
         )
         for passage, start, beat, begin, end in zip(passages, starts, beats, begins, ends, strict=True)
     )
+
+
+def _called_moves(
+    about: CalloutSubject, play: Play | None, style: CallStyle, on_mines: Iterable[OnMine]
+) -> list[_Move]:
+    """Return all moves that are called out: those of the play, findings of the linter, mines under a foot."""
+    ticks = () if play is None else play.rows.tick[(play.limb == Limb.UNPLAYED).any(axis=1)].tolist()
+    mined = sorted({one.tick for one in on_mines}) if MINE in style.words else []
+    notices = list(_notices(about.findings(), style)) if style.findings or ticks or mined else []
+    why = {} if style.findings else dict(_reasons(ticks, notices))
+    under = {} if style.findings else {notice.tick: notice.text for notice in notices if notice.rule == _OF_MINES}
+    found = list(_moves(about.pad, play, style, why))
+    if style.findings:
+        found += (_Move(notice.tick, notice.tick, plain(notice.text), notice.weight) for notice in notices)
+    mine = style.words.get(MINE, "")
+    found += (_Move(tick, tick, plain(mine + (f" ({under[tick]})" if tick in under else ""))) for tick in mined)
+    return found
+
+
+def _passages(moves: Sequence[_Move], table: _TickTable) -> list[_Passage]:
+    """Return the passages of moves, in order of time: moves in a row that belong together are one passage."""
+    passages: list[_Passage] = []
+    for move in sorted(moves):
+        here = next((p for p in reversed(passages[-2:]) if p.accepts(move, table)), None)
+        if here is None:
+            here = _Passage(move.first, move.last, weight=move.weight)
+            passages.append(here)
+        here.add(move)
+    return passages
 
 
 def _reasons(ticks: Iterable[int], notices: Iterable[_Notice]) -> Iterator[tuple[int, str]]:

@@ -211,7 +211,7 @@ class Dancer:
         skeleton = self.alone.skeleton
         rotations, root = np.zeros((len(moments), len(skeleton.names), 4)), np.zeros((len(moments), 3))
         rotations[..., 0] = 1.0
-        rate, heard = (np.array([getattr(moment, name) for moment in moments]) for name in ("rate", "heard"))
+        rate, heard = (np.array([getattr(moment, name) for moment in moments]) for name in ("rate", "heard_second"))
         for one in np.unique(rate):
             here = np.flatnonzero(rate == one)
             sampled, root[here] = sample(self.motions[float(one)][number], heard[here])

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.feet.play import Play
     from dancetutor_cli.feet.solved import Solved
     from dancetutor_cli.film.layout import FilmLook
-    from dancetutor_cli.film.notes import Callout, Cue, NoteTrack
+    from dancetutor_cli.film.notes import Callout, Cue, NoteTrack, Presses
     from dancetutor_cli.lint.findings import Finding
 
 
@@ -92,12 +92,20 @@ def prepare(request: FilmRequest, subject: FilmSubject) -> PreparedFilm:
         cues=tuple(_cues(dance, look)),
         fade=FADE if request.practice.rest and not request.background else 0.0,
     )
-    fade = clock.passes[-1].rest / clock.passes[-1].rate if request.section else 1.0
-    practice = replace(request.practice, claps=request.practice.claps or subject.music is None)
-    clicks = clicks_of(practice, clock.passes[0], chart.timing, presses.start)
-    sound = None if request.mute or request.background else SoundPlan(subject.music, request.sync, clicks, fade)
     notes = [note for rate, some in motions.items() for motion in some for note in _at_rate(rate, motion.notes)]
-    return PreparedFilm(plan, sound, (*notes, *title_warnings(song, plan.words, request.look.font)))
+    warnings = (*notes, *title_warnings(song, plan.words, request.look.font))
+    return PreparedFilm(plan, _sound(request, subject, presses), warnings)
+
+
+def _sound(request: FilmRequest, subject: FilmSubject, presses: Presses) -> SoundPlan | None:
+    """Return the music and the clicks of a film; None for a silent one."""
+    if request.mute or request.background:
+        return None
+    passes = subject.clock.passes
+    fade = passes[-1].rest / passes[-1].rate if request.section else 1.0
+    practice = replace(request.practice, claps=request.practice.claps or subject.music is None)
+    clicks = clicks_of(practice, passes[0], subject.chart.timing, presses.start)
+    return SoundPlan(subject.music, request.sync, clicks, fade)
 
 
 def _dancers(dance: FilmDance) -> list[tuple[Play, int]]:

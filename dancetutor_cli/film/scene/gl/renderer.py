@@ -260,6 +260,17 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             "pixels": np.array([width / 2, height / 2]),
             "focal": float(camera.focal * height),
         }
+        self._draw_skin(dancer, view)
+        # The outline has its own shader, so that a processor does not compute the dancer's light for its pixels.
+        self._use_skinned("outline.frag", dancer, outline=float(wide), line=np.array(look.outline) / 255.0, **view)
+        GL.glCullFace(GL.GL_FRONT)
+        for primitive, *_ in self._primitives:
+            primitive.draw(dancer.part)
+        self._lay_over(box)
+
+    def _draw_skin(self, dancer: _DancerInFrame, view: dict[str, Any]) -> None:
+        """Draw the dancer without the outline. view : the uniforms of the camera"""
+        look = self._scene.look.toon
         program = self._use_skinned(
             "dancer.frag",
             dancer,
@@ -279,12 +290,6 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
             program.set_uniform("tint", tint)
             program.set_uniform("least", least)
             primitive.draw(dancer.part)
-        # The outline has its own shader, so that a processor does not compute the dancer's light for its pixels.
-        self._use_skinned("outline.frag", dancer, outline=float(wide), line=np.array(look.outline) / 255.0, **view)
-        GL.glCullFace(GL.GL_FRONT)
-        for primitive, *_ in self._primitives:
-            primitive.draw(dancer.part)
-        self._lay_over(box)
 
     def _lay_over(self, box: NDArray[Any]) -> None:
         """Draw the dancer over the picture: each pixel is the mean of its fine pixels and samples."""
