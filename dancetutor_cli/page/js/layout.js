@@ -2,13 +2,12 @@
 
 import { alongPanel } from "./along.js";
 import { authorPanel, noteText } from "./author.js";
-import { chips } from "./chips.js";
 import { makeBar, makeZoom } from "./controls.js";
 import { el } from "./dom.js";
 import { findingsPanel, passagesPanel, settingsPanel } from "./panels.js";
 import { resultsPanel } from "./results.js";
 import { CAMERAS, FIRST_VIEW } from "./settings.js";
-import { resultCard, slimStanding, standing } from "./scores.js";
+import { chips, resultCard, slimStanding, standing } from "./scores.js";
 import { secondCaption, secondText, countOf, musicText, passedOf, quiet, statusText } from "./status_text.js";
 
 /**

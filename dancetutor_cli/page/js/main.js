@@ -8,7 +8,7 @@ import { showStartError } from "./start_error.js";
 import { meshData } from "./gl.js";
 import { Highway } from "./highway.js";
 import { layOut } from "./layout.js";
-import { readLink } from "./link.js";
+import { readLink } from "./places.js";
 import { Picture, decodeSkins } from "./picture.js";
 import { musicText } from "./status_text.js";
 import { Timeline } from "./timeline.js";

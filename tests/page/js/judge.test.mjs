@@ -9,8 +9,7 @@ import { unexplained } from "../../../dancetutor_cli/page/js/gutter.js";
 import { fillIn } from "../../../dancetutor_cli/page/js/words.js";
 import { delayOf } from "../../../dancetutor_cli/page/js/calibrate.js";
 import { Judge, ramp } from "../../../dancetutor_cli/page/js/judge.js";
-import { makeLink, parseLink } from "../../../dancetutor_cli/page/js/link.js";
-import { stretch } from "../../../dancetutor_cli/page/js/places.js";
+import { makeLink, parseLink, stretch } from "../../../dancetutor_cli/page/js/places.js";
 
 /** A page's labels as document.py makes them of a language's file, whose values are JSON strings. @param {string} name */
 function wordsOf(name) {
