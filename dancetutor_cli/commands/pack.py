@@ -137,13 +137,13 @@ def report_changes(options: AnalyzeOptions, output: IO[str]) -> int:
 
 def _changes(options: AnalyzeOptions, most_rows: int | None) -> Iterator[str]:
     """Yield a line with the number of changes, and the changes. most_rows : limit of rows of a chart; None: all"""
-    from dancetutor_cli.lint.snapshots import of_path, snapshot_of
+    from dancetutor_cli.lint.snapshots import snapshot_of, snapshot_of_path
     from dancetutor_cli.lint.versions import change_lines, compare
 
     assert options.compare is not None
     path, exclude = options.paths[0], options.exclude
     before = snapshot_of(options.compare, path, exclude)
-    found = list(compare(before, of_path(path, exclude)))
+    found = list(compare(before, snapshot_of_path(path, exclude)))
     if not found:
         return
     charts = sum(bool(change.chart) for change in found)

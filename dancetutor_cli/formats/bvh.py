@@ -274,7 +274,7 @@ def _frames(path: Path, lines: list[str], at: int, width: int) -> tuple[Array, f
 
 def _turns(channels: list[str], values: Array) -> Array:
     """Return local rotations (f, 4): the product of the rotations about the axes, in the order of the channels."""
-    out = np.tile([1.0, 0.0, 0.0, 0.0], (len(values), 1))
+    out = np.tile(quat.IDENTITY, (len(values), 1))
     for k, name in enumerate(channels):
         kind, axis = _CHANNELS[name]
         if kind == "rotation":

@@ -22,7 +22,6 @@ from dancetutor_cli.run.files import one_of
 SUFFIXES = (".bvh", ".glb", ".vrm", ".npz")
 LEAST, MOST = 10.0, 240.0  # frames per second, limits for files without a frame rate
 LONGEST = 3600.0  # seconds of an animation
-_IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 
 
 def read_source(path: Path, animation: str | None = None) -> Motion | CapturedMotion:
@@ -57,7 +56,7 @@ def captured_from_motion(path: Path, motion: Motion) -> CapturedMotion:
     if len(motion.times) < 2:
         raise FileError(path, "has one frame; a motion needs at least two")
     places, turns = world_transforms(skeleton, motion.rotations, motion.root)
-    rest_turns = np.tile(_IDENTITY, (len(skeleton.names), 1))
+    rest_turns = np.tile(quat.IDENTITY, (len(skeleton.names), 1))
     return CapturedMotion(
         path,
         skeleton.names,
@@ -147,7 +146,7 @@ def _node_transforms(
 ) -> tuple[Array, Array, Array]:
     """Return translations (f, n, 3), rotations (f, n, 4) and scales (f, n, 3) of all nodes at the times."""
     items = container.items("nodes")
-    moved, turned, scaled = np.zeros((len(items), 3)), np.tile(_IDENTITY, (len(items), 1)), np.ones((len(items), 3))
+    moved, turned, scaled = np.zeros((len(items), 3)), np.tile(quat.IDENTITY, (len(items), 1)), np.ones((len(items), 3))
     for k in range(len(items)):
         parent = int(nodes.parents[k])
         matrix = nodes.world[k] if parent < 0 else np.linalg.pinv(nodes.world[parent]) @ nodes.world[k]
@@ -171,7 +170,7 @@ def _node_transforms(
 def _quaternion(matrix: Array) -> Array:
     """Return the quaternion (4,) of a rotation matrix."""
     if np.linalg.det(matrix) < 0.5:  # a mirrored or flat matrix has no rotation
-        return _IDENTITY
+        return quat.IDENTITY
     return quat.from_matrix(matrix)
 
 

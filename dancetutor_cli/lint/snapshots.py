@@ -54,11 +54,11 @@ def snapshot_of(other: str, path: Path, exclude: Sequence[str] = ()) -> Snapshot
     if os.path.lexists(there):
         if there.is_dir() != path.is_dir():
             raise UsageError("--compare takes two files or two folders")
-        return of_path(there, exclude, None if path.is_dir() else path.name)
-    return of_last_run(path, exclude) if other == LAST else of_revision(other, path, exclude)
+        return snapshot_of_path(there, exclude, None if path.is_dir() else path.name)
+    return snapshot_of_last_run(path, exclude) if other == LAST else snapshot_of_revision(other, path, exclude)
 
 
-def of_path(path: Path, exclude: Sequence[str] = (), name: str | None = None) -> Snapshot:
+def snapshot_of_path(path: Path, exclude: Sequence[str] = (), name: str | None = None) -> Snapshot:
     """Return the chart files that a path has now. name : the name by which a single file is compared, None: its own"""
     if not path.is_dir():
         return Snapshot(str(path), {name or path.name: StoredFile(partial(read_bytes, path, CHART_LIMIT))})
@@ -91,7 +91,7 @@ _PATIENCE = 60.0  # seconds; the longest that git may run
 _HASHES = {40: hashlib.sha1, 64: hashlib.sha256}  # letters of an object's name -> hash that makes the name
 
 
-def of_revision(revision: str, path: Path, exclude: Sequence[str] = ()) -> Snapshot:
+def snapshot_of_revision(revision: str, path: Path, exclude: Sequence[str] = ()) -> Snapshot:
     """Return the chart files of a path at a revision of git, such as HEAD~1.
 
     UsageError, one line, if git is not installed or the revision does not exist.
@@ -214,7 +214,7 @@ def open_store() -> ChartStore | None:
     return None if folder is None else ChartStore(folder)
 
 
-def of_last_run(path: Path, exclude: Sequence[str] = ()) -> Snapshot:
+def snapshot_of_last_run(path: Path, exclude: Sequence[str] = ()) -> Snapshot:
     """Return the chart files of a path as the last run of `analyze` read them; UsageError if there are none."""
     store, files = open_store(), dict[str, StoredFile]()
     root = path.absolute()

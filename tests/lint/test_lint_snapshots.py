@@ -81,7 +81,7 @@ class TestLastRun:
     def test_without_a_cache_nothing_is_kept(self, pack: Path) -> None:
         analyze(pack, "--no-cache")
         with pytest.raises(UsageError, match=r"no earlier run of analyze on .* is stored"):
-            snapshots.of_last_run(pack)
+            snapshots.snapshot_of_last_run(pack)
 
     def test_a_damaged_one_is_a_line(self, pack: Path, tmp_path: Path) -> None:
         analyze(pack)
@@ -127,10 +127,10 @@ class TestRevisions:
 
     def test_without_a_repository_or_git(self, pack: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         with pytest.raises(UsageError, match="is not in a git repository"):
-            snapshots.of_revision("HEAD", pack)
+            snapshots.snapshot_of_revision("HEAD", pack)
         monkeypatch.setenv("PATH", "")
         with pytest.raises(UsageError, match="install git"):
-            snapshots.of_revision("HEAD", pack)
+            snapshots.snapshot_of_revision("HEAD", pack)
 
     def test_git_is_not_taken_from_the_pack(self, versions: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         (versions / "git").write_text("#!/bin/sh\ntouch ran\n")

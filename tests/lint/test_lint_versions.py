@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from dancetutor_cli.commands.analyze import command
-from dancetutor_cli.lint.snapshots import of_path
+from dancetutor_cli.lint.snapshots import snapshot_of_path
 from dancetutor_cli.lint.versions import ChartChange, change_lines, compare
 from dancetutor_cli.run.errors import UsageError
 
@@ -26,7 +26,7 @@ def changed(tmp_path: Path, edit: Callable[[str], str]) -> list[ChartChange]:
     for name, text in (("old", SONG), ("new", edit(SONG))):
         (tmp_path / name / "a").mkdir(parents=True)
         (tmp_path / name / "a" / "a.sm").write_text(text, encoding="utf-8")
-    return list(compare(of_path(tmp_path / "old"), of_path(tmp_path / "new")))
+    return list(compare(snapshot_of_path(tmp_path / "old"), snapshot_of_path(tmp_path / "new")))
 
 
 def said(tmp_path: Path, edit: Callable[[str], str]) -> list[str]:
@@ -78,7 +78,8 @@ def test_files_come_and_go_and_may_be_broken(tmp_path: Path) -> None:
     (tmp_path / "new" / "b.sm").write_text(SONG)
     (tmp_path / "old" / "c.sm").write_text(SONG)
     (tmp_path / "new" / "a" / "a.sm").write_bytes(b"\0\1\2")
-    lines = list(change_lines(list(compare(of_path(tmp_path / "old"), of_path(tmp_path / "new"))), None))
+    old, new = (snapshot_of_path(tmp_path / name) for name in ("old", "new"))
+    lines = list(change_lines(list(compare(old, new)), None))
     assert lines[0].startswith("a/a.sm: can no longer be read")
     assert lines[1:] == ["b.sm: is new", "c.sm: was removed"]
 
