@@ -1,4 +1,4 @@
-"""Options with one meaning in all commands that have them, and a decorator that gives them to a command as a record."""
+"""Options with one meaning in several commands, as a record for each command; `--report` and `--plot` of a motion."""
 
 from __future__ import annotations
 

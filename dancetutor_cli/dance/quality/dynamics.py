@@ -1,4 +1,4 @@
-"""Mechanics: forces that no contact can supply, free fall in jumps, balance over the feet."""
+"""Mechanics: forces that no contact can supply (least squares), free fall in jumps, balance over the feet."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The common computations of both renderers before they draw a frame: skin, the shadow map's place, feet, regions."""
+"""What renderers compute before they draw a frame: skin, the shadow map's place, feet, regions; matrices for OpenGL."""
 
 from __future__ import annotations
 
