@@ -1,4 +1,4 @@
-"""The performance of a chart: its dancers and how they dance. Every section, film, page and file shows a part of it."""
+"""The performance of a chart: one or two dancers and how they dance. All sections, films and files are its parts."""
 
 from __future__ import annotations
 
