@@ -79,7 +79,7 @@ def _long() -> list[Row]:
         start = time.process_time()
         make_page(requests[8])
         kept = time.process_time() - start
-        with patch("dancetutor_cli.dance.performance.kept_folder", return_value=None):
+        with patch("dancetutor_cli.dance.pieces.kept_folder", return_value=None):
             start = time.process_time()
             long = make_page(requests[15])
             whole = (time.process_time() - start) * 8 / 15

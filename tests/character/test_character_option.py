@@ -133,7 +133,7 @@ def test_a_bad_character_is_one_line_before_the_work(
         raise AssertionError("work began")
 
     monkeypatch.setattr("dancetutor_cli.feet.solver.solve.solve_rows", work)
-    monkeypatch.setattr("dancetutor_cli.dance.performance.planned", work)
+    monkeypatch.setattr("dancetutor_cli.dance.performance.plan_dance", work)
     bad = shared_data / "characters" / "raylib_robot.glb"
     before = set(tmp_path.iterdir())
     for character, said in ((bad, "raylib_robot.glb"), ("nobody", "mannequin")):
