@@ -40,6 +40,24 @@ MAPPED = (
 )
 
 
+SMALL = 80  # lines: a smaller module has a reason
+_OF_ALL, _FOUND = "every part uses it, so it stands before all of them", "a style or a writer, found by its name"
+_ALONE, _START = "imported by a worker alone, by its name", "loaded at every start, so it needs little"
+REASONS = {
+    "run/preload.py": _ALONE, "film/work/worker_imports.py": _ALONE, "film/work/worker_imports_gl.py": _ALONE,
+    "dance/units.py": _OF_ALL, "film/picture.py": _OF_ALL, "feet/solver/vocabulary.py": _OF_ALL,
+    "film/plan.py": _OF_ALL, "run/languages.py": _OF_ALL,
+    "film/choices.py": _START, "chart/names.py": _START, "formats/writers.py": _START, "markers/styles.py": _START,
+    "markers/feet_text.py": _FOUND, "markers/rows.py": _FOUND,
+    "feet/solved.py": "the way in, above the solver and the feet that people have set",
+    "feet/solver/compiled.py": "chooses without numba whether kernels are compiled",
+    "film/media/yuv.py": "kernels; encoder works without them",
+    "page/capture.py": "needs the film of a motion, which a page of a chart does without",
+    "run/markup.py": "pages and reports use it, which know nothing of each other",
+    "dance/ik/trunk.py": "hands and targets change now; then it joins them or the knees",
+}  # fmt: skip
+
+
 @cache
 def imported(path: Path) -> frozenset[str]:
     """Everything of the package that a file imports, also inside of functions and for types only."""
@@ -73,6 +91,16 @@ def test_every_package_is_in_the_table() -> None:
 def test_every_module_is_in_a_package_and_holds_a_theme() -> None:
     assert {path.stem for path in PACKAGE.glob("*.py")} == {"__init__", "__main__"}
     assert [path for path in PACKAGE.rglob("*.py") if len(path.read_text("utf-8").splitlines()) > 400] == []
+
+
+def test_a_small_module_has_a_reason() -> None:
+    """A theme of less than 80 lines stands with the theme that uses it; what has grown or gone leaves the list."""
+    lines = {
+        path.relative_to(PACKAGE).as_posix(): len(path.read_text("utf-8").splitlines())
+        for path in PACKAGE.rglob("*.py")
+        if path.name != "__init__.py"
+    }
+    assert {name for name, count in lines.items() if count < SMALL} == set(REASONS)
 
 
 def test_every_package_says_in_a_sentence_what_it_does() -> None:
