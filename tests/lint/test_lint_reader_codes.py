@@ -19,7 +19,7 @@ from dancetutor_cli.run.errors import FileError
 
 READER = Path(reader.__file__).parent
 CODE = re.compile(r"[a-z]+(-[a-z]+)+")
-REPORTERS = {"ReadWarning", "report", "warn"}
+REPORTERS = {"ReadWarning", "add_warnings", "warn"}
 CLAIMED = {code for rule in all_rules().values() for code in rule.codes}
 
 
