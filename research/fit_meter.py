@@ -338,6 +338,13 @@ def yaml_of(pad: str, model: MeterModel) -> str:
     return "".join(lines)
 
 
+def used(every: Sequence[Labelled], pad: str) -> tuple[list[Labelled], Counter[str]]:
+    """The charts of a pad whose labels are real meters; and how many there are, and are left out, by reason."""
+    charts = [one for one in every if not one.again and one.steps_type.replace("half", "") == pad]
+    parted = list(sorted_out(charts))
+    return [one for one, reason in parted if not reason], Counter(reason for _, reason in parted)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
@@ -349,11 +356,8 @@ def main() -> None:
     given = parser.parse_args()
     every = labelled(given.folder, WANTED)
     for pad, names in PADS.items():
-        charts = [one for one in every if not one.again and one.steps_type.replace("half", "") == pad]
-        parted = list(sorted_out(charts))
-        reasons = Counter(reason for _, reason in parted)
-        used = [one for one, reason in parted if not reason]
-        out = judged(used, names)
+        charts, reasons = used(every, pad)
+        out = judged(charts, names)
         print("\n".join(table(pad, names, out)))
         for reason, count in sorted(reasons.items()):
             print(f"  {count} {'charts' if not reason else 'left out: ' + reason}")
@@ -371,7 +375,7 @@ def main() -> None:
             (DOCS / "meter.svg").write_text(picture(out, names), encoding="utf-8")
         if not given.dry_run:
             path = TARGET / f"{pad}.yaml"
-            path.write_text(yaml_of(pad, Fit(used, names).model(intervals, alone)), encoding="utf-8")
+            path.write_text(yaml_of(pad, Fit(charts, names).model(intervals, alone)), encoding="utf-8")
             print(f"  written: {path.name}")
     if given.tiers:
         score_fit.fit_scores(every, WANTED, (given.folder, given.tiers), dry_run=given.dry_run)

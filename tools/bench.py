@@ -27,6 +27,11 @@ def rows_of(names: Iterable[str]) -> Iterable[tuple[str, list[Row]]]:
         yield name, importlib.import_module(f"bench_{name}").measure()
 
 
+def number(value: float) -> str:
+    """A measured value as text."""
+    return f"{value:,.0f}" if abs(value) >= 1000 else f"{value:.3g}"
+
+
 def main() -> None:
     known = sorted(p.stem.removeprefix("bench_") for p in HERE.glob("bench_*.py"))
     wanted = sys.argv[1:] or known
@@ -37,8 +42,7 @@ def main() -> None:
         table.add_column(column, justify="right" if column == "measured" else "left")
     for name, rows in rows_of(wanted):
         for what, value, unit, goal, peer in rows:
-            text = f"{value:,.0f}" if abs(value) >= 1000 else f"{value:.3g}"
-            table.add_row(f"{name}: {what}", text, unit, goal, peer)
+            table.add_row(f"{name}: {what}", number(value), unit, goal, peer)
     Console(width=140).print(table)
 
 

@@ -95,8 +95,8 @@ def _other_limbs(skeleton: Skeleton, joints: dict[str, int], draw: np.random.Gen
     return replace(skeleton, offsets=offsets), legs
 
 
-def row(label: str, work: Retargeting) -> tuple[str, list[float]]:
-    """A line of the table, and the output's figures."""
+def sides_of(work: Retargeting) -> tuple[list[float], list[float]]:
+    """Figures of input and output: slide (median, worst, mm), frames past limits, trunk (%), knees (degrees/s^2)."""
     sides = []
     for motion in (work.input_on_body, work.ragdoll_result.motion):
         slides, body = [1000 * one.slide for one in stands(motion)] or [0.0], body_of(motion)
@@ -113,9 +113,37 @@ def row(label: str, work: Retargeting) -> tuple[str, list[float]]:
             ]
         )
     a, b = sides
+    return a, b
+
+
+def line_of(label: str, a: list[float], b: list[float]) -> str:
+    """A line of the table."""
     pairs = f"{a[0]:.0f} / {a[1]:.0f} | {b[0]:.1f} / {b[1]:.0f}"
     rest = " | ".join(f"{x:.0f} | {y:.0f}" for x, y in zip(a[2:], b[2:], strict=True)).replace("nan", "-")
-    return f"| {label} | {pairs} | {rest} |", b
+    return f"| {label} | {pairs} | {rest} |"
+
+
+def measured(
+    sources: list[Path], count: int, seed: int, character: str, only: str = ""
+) -> tuple[list[tuple[str, list[float], list[float]]], list[str]]:
+    """Clips and made ones: label, figures of input and output; and a line for each that was refused."""
+    values, refused = [], []
+    options = RagdollOptions(CORRECTIONS)
+    with tempfile.TemporaryDirectory() as folder:
+        clips = [(path.stem, path) for path in sources]
+        for k, (label, motion) in enumerate(made(sources, count, seed)):
+            path = Path(folder) / f"{k}.bvh"
+            write_bvh(path, motion)
+            clips.append((label, path))
+        for label, path in clips:
+            if only not in label:
+                continue
+            try:
+                work = Retargeting(RetargetTask(path, character, "neutral", options), read_source(path))
+                values.append((label, *sides_of(work)))
+            except DancetutorError as error:
+                refused.append(f"{label}: {error}")
+    return values, refused
 
 
 def main() -> None:
@@ -129,29 +157,10 @@ def main() -> None:
     options = parser.parse_args()
     sources = sorted(options.folder.glob("*.bvh"))
     print(HEAD)
-    values, refused = [], []
-    with tempfile.TemporaryDirectory() as folder:
-        clips = [(path.stem, path) for path in sources]
-        for k, (label, motion) in enumerate(made(sources, options.made, options.seed)):
-            path = Path(folder) / f"{k}.bvh"
-            write_bvh(path, motion)
-            clips.append((label, path))
-        for label, path in clips:
-            if options.only not in label:
-                continue
-            try:
-                line, figures = row(
-                    label,
-                    Retargeting(
-                        RetargetTask(path, options.character, "neutral", RagdollOptions(CORRECTIONS)), read_source(path)
-                    ),
-                )
-            except DancetutorError as error:
-                refused.append(f"{label}: {error}")
-                continue
-            print(line, flush=True)
-            values.append(figures)
-    table = np.array(values)
+    values, refused = measured(sources, options.made, options.seed, options.character, options.only)
+    for label, before, after in values:
+        print(line_of(label, before, after))
+    table = np.array([after for _, _, after in values])
     print(
         f"\n{len(values)} clips: median slide over 5 mm in {(table[:, 0] > 5).sum()}, worst over 25 mm in "
         f"{(table[:, 1] > 25).sum()} (largest {table[:, 1].max():.0f}); past limits in {(table[:, 2] > 0).sum()}; "

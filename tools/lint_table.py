@@ -1,9 +1,9 @@
 """How often the linter finds what: findings per 100 charts by rule and meter.
 
     tools/lint_table.py FOLDER --keep after.json            # lint a folder by the defaults, keep what was found
-    tools/lint_table.py --before before.json --after after.json     # the table of docs/linter.md
+    tools/lint_table.py --before before.json --after after.json     # a table of both
 
-The findings of another version: run this file with that version's package first on PYTHONPATH.
+`tools/doc_figures.py rules` writes the table of docs/linter.md. The findings of another version: run this file with that version's package first on PYTHONPATH.
 """
 
 from __future__ import annotations
@@ -72,30 +72,29 @@ def kept(folder: Path) -> dict[str, Any]:
     return {"charts": dict(charts), "names": names, "found": dict(found)}
 
 
-def table(before: dict[str, Any], after: dict[str, Any]) -> str:
-    """Findings per 100 charts, before and after, a line for each rule and severity, a column for each band."""
+def table(before: dict[str, Any] | None, after: dict[str, Any]) -> str:
+    """Findings per 100 charts, before (if given) and after: a line for each rule and severity, a column for each band."""
+    kinds = [kind for kind in (before, after) if kind is not None]
     bands = sorted(after["charts"], key=lambda name: (name.split()[0], int(name.split()[1].rstrip("+").split("-")[0])))
-    names = before["names"] | after["names"]
+    names = {rule: name for kind in kinds for rule, name in kind["names"].items()}
     lines = [f"| rule | {' | '.join(bands)} | all |", f"| --- |{' ---: |' * (len(bands) + 1)}"]
     lines.append(
         "| charts | " + " | ".join(f"{after['charts'][one]}" for one in bands) + f" | {sum(after['charts'].values())} |"
     )
-    keys = {tuple(key.split("|")[:2]) for kind in (before, after) for key in kind["found"]}
-    for rule, severity in sorted(keys):
+    for rule, severity in sorted({tuple(key.split("|")[:2]) for kind in kinds for key in kind["found"]}):
         cells = []
         for where in (*bands, None):
-            pair = []
-            for kind in (before, after):
-                many = sum(
-                    n
-                    for key, n in kind["found"].items()
-                    if key.split("|")[:2] == [rule, severity] and where in (None, key.split("|")[2])
-                )
-                charts = sum(kind["charts"].values()) if where is None else kind["charts"].get(where, 0)
-                pair.append(_short(100 * many / max(charts, 1)))
-            cells.append(" → ".join(pair) if pair != ["0", "0"] else "")
+            values = [_short(_share(kind, f"{rule}|{severity}|", where)) for kind in kinds]
+            cells.append(" → ".join(values) if set(values) != {"0"} else "")
         lines.append(f"| {rule} {names[rule]}, {severity} | {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
+
+
+def _share(kind: dict[str, Any], begin: str, where: str | None) -> float:
+    """Findings per 100 charts of a band, or of all."""
+    many = sum(n for key, n in kind["found"].items() if key.startswith(begin) and where in (None, key.split("|")[2]))
+    charts = sum(kind["charts"].values()) if where is None else kind["charts"].get(where, 0)
+    return 100 * many / max(charts, 1)
 
 
 def _short(value: float) -> str:

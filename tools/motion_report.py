@@ -99,22 +99,28 @@ def main() -> None:
     wanted = wanted[first - 1 :: every]
     if not wanted:
         sys.exit("no chart was found that has a pad")
-    results, started = [], time.monotonic()
-    workers = open_workers(min(options.jobs, len(wanted)))
+    results = measured(wanted, options.preset, options.bar, options.section, options.jobs)
+    results.sort(key=lambda m: (*(-x for x in m.badness), m.path, m.index))
+    _write(options.out, results)
+    print(summary(results))
+    print(f"{options.out}.txt and .json: every figure of every chart")
+    sys.exit(any(m.error for m in results))
+
+
+def measured(wanted: list[Wanted], preset: str | None, bar: bool, section: float, jobs: int) -> list[Measured]:
+    """The figures of charts, in processes of their own, as they are done."""
+    results: list[Measured] = []
+    started, workers = time.monotonic(), open_workers(min(jobs, len(wanted)))
     try:
         for chart in wanted:
-            workers.submit(Task(chart, measure, (chart, options.preset, options.bar, options.section)))
+            workers.submit(Task(chart, measure, (chart, preset, bar, section)))
         for done in workers.results():
             chart = done.key
             results.append(done.result or Measured(chart.path, chart.index, chart.label, error=str(done.error)))
             _progress(len(results), len(wanted), started)
     finally:
         workers.close()
-    results.sort(key=lambda m: (*(-x for x in m.badness), m.path, m.index))
-    _write(options.out, results)
-    print(summary(results))
-    print(f"{options.out}.txt and .json: every figure of every chart")
-    sys.exit(any(m.error for m in results))
+    return results
 
 
 def _options() -> argparse.Namespace:

@@ -38,6 +38,7 @@ from dancetutor_cli.run.reading import config_names
 
 Array = np.ndarray[Any, Any]
 RATE = 60.0  # frames per second that are compared
+FIGURES = ("lift", "peak", "air", "heel", "pelvis", "bounce", "sway", "knees")  # see _figures; knees: between them
 BONES = ("hip", "knee", "talocrural", "metatarsal")
 COLOURS = {"l": (80, 150, 255), "r": (255, 120, 70)}
 CELL, SCALE = (118, 190), 165.0  # pixels of one moment, and of a metre
@@ -108,16 +109,23 @@ def _legs(motion: Motion, times: Array, air: Array) -> Legs:
 
 def table(every: dict[str, list[Legs]]) -> str:
     """The figures of each style, means over charts, and the distances of all pairs."""
-    lines = ["style      lift   peak   air  heel   pelvis bounce sway   between knees  (cm, %, degrees)"]
+    lines = [f"{'style':9s}" + " ".join(f"{name:>6s}" for name in FIGURES) + "  (cm, %, degrees)"]
     for name, charts in every.items():
-        rows = np.array([_figures(legs) for legs in charts])
-        values = rows.mean(axis=0)
-        lines.append(f"{name:9s}" + " ".join(f"{v:6.1f}" for v in values))
+        lines.append(f"{name:9s}" + " ".join(f"{v:6.1f}" for v in means(charts).values()))
     lines.append("pair: mean distance of knees, ankles and toes, cm: all frames, legs in the air, pelvis")
     for one, other in combinations(every, 2):
-        apart = np.array([_apart(a, b) for a, b in zip(every[one], every[other], strict=True)])
-        lines.append(f"{one} {other}: " + ", ".join(f"{v:.1f}" for v in apart.mean(axis=0)))
+        lines.append(f"{one} {other}: " + ", ".join(f"{v:.1f}" for v in distances(every[one], every[other])))
     return "\n".join(lines)
+
+
+def means(charts: list[Legs]) -> dict[str, float]:
+    """The figures of a style by their names, means over its charts."""
+    return dict(zip(FIGURES, np.mean([_figures(legs) for legs in charts], axis=0), strict=True))
+
+
+def distances(one: list[Legs], other: list[Legs]) -> tuple[float, ...]:
+    """Mean distance of knees, ankles and toes of two styles, cm: all frames, legs in the air, pelvis."""
+    return tuple(np.mean([_apart(a, b) for a, b in zip(one, other, strict=True)], axis=0))
 
 
 def _figures(legs: Legs) -> tuple[float, ...]:

@@ -1,0 +1,91 @@
+"""Figures of docs/motion.md: the report of the demo song, and how often the goals are met on other charts."""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections import Counter
+from collections.abc import Callable, Iterable
+from functools import cache
+from itertools import pairwise
+from typing import Any
+
+import motion_report
+from figures_base import DEMO, HARD, Figures, corpus, goal_text, goals, markdown, reported
+from motion_report import Measured
+
+from dancetutor_cli.run.pool import default_jobs
+
+SHOWN = (
+    "contact error", "contacts missed", "plant slide", "penetration", "flight gravity off by", "ground force, largest",
+    "balance", "frames past joint limits", "limb in torso", "leg in leg",
+)  # fmt: skip
+UNITS = {
+    "contact error": " ms", "plant slide": " mm", "penetration": " mm", "flight gravity off by": " %",
+    "ground force, largest": " body weights", "balance": " %", "limb in torso": " % of frames", "leg in leg": " frames",
+}  # fmt: skip
+COUNT, SEED, SECTION = 100, 211, 20.0  # charts, of no seed that chose anything, and seconds of each
+
+
+def motion() -> str:
+    """Figures of `animate --report` for the demo's hard chart."""
+    call = ("animate", DEMO, *HARD)
+    values, asked = reported(*call), goals(*call)
+    rows = [(name, f"{round(values[name], 3):.3g}{UNITS.get(name, '')}", asked[name]) for name in SHOWN]
+    return markdown(("figure", "here", "goal"), rows)
+
+
+@cache
+def measured() -> list[Measured]:
+    """The sections that both tables below are about. Raises Missing."""
+    corpus()
+    found = motion_report.measured(motion_report.pick(COUNT, SEED), None, False, SECTION, default_jobs())
+    if broken := [f"{one.path} {one.label}: {one.error}" for one in found if one.error]:
+        raise RuntimeError("\n".join(broken))
+    return found
+
+
+def goals_met() -> str:
+    """How many sections meet all goals, by steps a second on average."""
+    every = measured()
+    groups = {
+        f"{low:g} to {high:g}" if high < math.inf else f"{low:g} and more": [m for m in every if low <= m.pace < high]
+        for low, high in pairwise(motion_report.BANDS)
+    }
+    groups = {name: group for name, group in groups.items() if group} | {"all": every}
+
+    def line(words: str, misses: Callable[[Measured], list[str]]) -> list[str]:
+        return [words, *(f"{sum(not misses(m) for m in group)} of {len(group)}" for group in groups.values())]
+
+    rows = [line("all goals but residuals", others), line("all goals", lambda m: names_of(m.missed))]
+    return markdown(("sections that meet", *groups), rows)
+
+
+def goals_missed() -> str:
+    """Which goals sections miss, most often missed first."""
+    every = measured()
+    missed = Counter(name for m in every for name in names_of(m.missed))
+    rows = []
+    for name, count in missed.most_common():
+        values = [(f["value"], f) for m in every for f in m.figures if f["name"] == name and f["value"] is not None]
+        figure = values[0][1]
+        median = statistics.median(value for value, _ in values)
+        rows.append((name, goal_text(figure), f"{count} of {len(values)}", f"{median:.3g}"))
+    return markdown(("figure", "goal", "sections that miss it", "median of all sections"), rows, 2)
+
+
+def names_of(figures: Iterable[dict[str, Any]]) -> list[str]:
+    """Their names."""
+    return [figure["name"] for figure in figures]
+
+
+def others(one: Measured) -> list[str]:
+    """The goals that a section misses besides those of inverse dynamics."""
+    return [name for name in names_of(one.missed) if not name.startswith("residual ")]
+
+
+FIGURES: Figures = {
+    "motion": ("motion.md", motion),
+    "goals-met": ("motion.md", goals_met),
+    "goals-missed": ("motion.md", goals_missed),
+}

@@ -1,0 +1,73 @@
+"""Figures of docs/performance.md: the rows of `make bench`, the commands on the demo song, growth."""
+
+from __future__ import annotations
+
+import os
+import platform
+import tempfile
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import bench
+import bench_growth
+from figures_base import DEMO, HARD, ROOT, Figures, Missing, command, corpus, markdown
+
+BENCHES = ("analyze", "solver", "folder", "sync", "motion", "film", "page")
+RUNS = 3
+
+
+def where() -> str:
+    """A sentence on the machine: without it times say nothing."""
+    load = f", {os.getloadavg()[0]:.1f} programs at work" if hasattr(os, "getloadavg") else ""
+    return f"{os.cpu_count()} cores, Python {platform.python_version()}{load}"
+
+
+def benched(name: str) -> str:
+    """The rows of `tools/bench.py NAME`. Raises Missing."""
+    (_, rows), *_ = bench.rows_of([name])
+    if not rows:
+        raise Missing("what `make bench` needs for this")
+    head = (f"{name}, on {where()}", "measured", "unit", "goal")
+    return markdown(head, [(what, bench.number(value), unit, goal) for what, value, unit, goal, _ in rows])
+
+
+def speed() -> str:
+    """Processor seconds of the commands, compiled kernels and an empty cache of results; the least of three runs."""
+    with tempfile.TemporaryDirectory() as folder:
+        calls = {
+            "`analyze`, one song with six charts": ("analyze", DEMO, "--no-cache", "--exit-zero"),
+            "`animate`, 42 s of dance": ("animate", DEMO, *HARD, "-o", f"{folder}/a.glb"),
+            "`animate --style neutral`, the same": ("animate", DEMO, *HARD, "--style", "neutral", "-o", f"{folder}/b.glb"),
+            "`page`, one chart": ("page", DEMO, *HARD, "-o", f"{folder}/a.html", "-q"),
+            "`render`, 2 s at 1280x720": ("render", DEMO, *HARD, "--section", "20:22", "-o", f"{folder}/a.mp4", "-q"),
+        }
+        rows = [(name, f"{min(command(*call) for _ in range(RUNS)):.1f}") for name, call in calls.items()]
+    return markdown((f"command, on {where()}", "processor seconds"), rows)
+
+
+def growth() -> str:
+    """Seconds and memory by minutes of a chart and by files; draws docs/growth.svg too. Raises Missing."""
+    real = sorted(path for path in corpus().rglob("*") if path.suffix.lower() in (".sm", ".ssc"))
+    with tempfile.TemporaryDirectory() as folder:
+        points = {
+            "minutes of one chart": bench_growth.with_length(Path(folder)),
+            "files": bench_growth.with_files(Path(folder), real),
+        }
+    (ROOT / "docs" / "growth.svg").write_text(bench_growth.plot(points), encoding="utf-8")
+    tables = [
+        markdown((name, "processor time, s", "memory, MiB"), [(f"{n:g}", f"{s:.2f}", f"{m:.0f}") for n, s, m in line])
+        for name, line in points.items()
+    ]
+    return "\n".join(tables)
+
+
+def _block(name: str) -> tuple[str, Callable[[], str]]:
+    return "performance.md", partial(benched, name)
+
+
+FIGURES: Figures = {
+    "speed": ("performance.md", speed),
+    "growth": ("performance.md", growth),
+    **{f"bench-{name}": _block(name) for name in BENCHES},
+}
