@@ -28,7 +28,7 @@ help:
 	@echo "make site    the documents as a web site with search, in build/site/; strict about links"
 	@echo "make gallery  ten films, sheets and pages of free songs with an index, in build/gallery/; run again to continue"
 	@echo "make docs-pictures  draw the pictures of README and docs again"
-	@echo "make docs-figures   write the tables of docs that commands print again"
+	@echo "make docs-figures   measure the tables of docs again; FIGURES='motion physics' those of two pages"
 	@echo "make page-tools  TypeScript and axe for the tests of the practice page, with npm"
 	@echo "make wheel   a wheel for this Python and platform with compiled kernels, in dist/"
 	@echo "make install-check  the wheel by pipx and uvx in an empty home, as a user would; needs a package registry"
@@ -96,8 +96,8 @@ gallery: setup
 docs-pictures: setup
 	@$(BIN)/python tools/doc_pictures.py
 
-docs-figures: setup
-	@$(BIN)/python tools/doc_figures.py
+docs-figures: setup-dev
+	@OMP_NUM_THREADS=1 $(BIN)/python tools/doc_figures.py $(FIGURES)
 
 bench: setup-dev
 	@$(BIN)/python tools/bench.py $(BENCH_ARGS)

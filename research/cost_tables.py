@@ -1,4 +1,4 @@
-"""Write the tables of docs/cost-model.md from the presets itg and pump: after a fit, or when a comment changes."""
+"""The tables of docs/cost-model.md from the presets itg and pump; tools/doc_figures.py writes them."""
 
 from __future__ import annotations
 
@@ -9,9 +9,7 @@ from typing import Any
 import yaml
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs" / "cost-model.md"
 TIMES = (80, 150, 270, 500, 1000)
-BEGIN, END = "<!-- figures: costs -->\n", "<!-- end of figures -->\n"
 
 
 def tables() -> str:
@@ -46,14 +44,3 @@ def _comments(path: Path) -> dict[str, str]:
         elif key := re.match(r"  ([a-z0-9-]+): .*?(?:  # (.*))?$", line):
             found[key[1]] = key[2] or above
     return found
-
-
-def main() -> None:
-    """Replace the text between the marks."""
-    text = PAGE.read_text("utf-8")
-    head, rest = text.split(BEGIN)
-    PAGE.write_text(head + BEGIN + tables() + END + rest.split(END)[1], encoding="utf-8")
-
-
-if __name__ == "__main__":
-    main()

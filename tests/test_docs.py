@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import importlib
-import importlib.util
 import json
 import re
 import shlex
 from pathlib import Path
-from typing import Any
 
 import click
 import pytest
@@ -115,35 +113,6 @@ def test_links_between_pages_lead_somewhere(name: str) -> None:
         if "://" not in target and not target.startswith("#"):
             there = (ROOT / name).parent / target.split("#")[0]
             assert there.exists(), f"{name} links to {target}, which is not there"
-
-
-def tool(name: str) -> Any:
-    spec = importlib.util.spec_from_file_location(name, ROOT / "tools" / f"{name}.py")
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def test_the_figures_of_the_motion_are_those_that_it_has() -> None:
-    """Within a tenth, for other processors round otherwise; names, units and goals to the letter."""
-    figures = tool("doc_figures")
-    shown, made = (
-        [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()]
-        for table in (figures.between(PAGES["docs/motion.md"], "motion"), figures.motion())
-    )
-    assert [(name, goal) for name, _, goal in shown] == [(name, goal) for name, _, goal in made], "make docs-figures"
-    for (name, old, _), (_, new, _) in zip(shown[2:], made[2:], strict=True):
-        (a, *unit), (b, *other) = old.split(), new.split()
-        assert unit == other and float(a) == pytest.approx(float(b), rel=0.1, abs=0.01), f"{name}: make docs-figures"
-
-
-def test_the_tables_of_costs_are_those_of_the_presets() -> None:
-    spec = importlib.util.spec_from_file_location("cost_tables", ROOT / "research" / "cost_tables.py")
-    assert spec is not None and spec.loader is not None
-    tool = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(tool)
-    assert tool.tables() in PAGES["docs/cost-model.md"], "run research/cost_tables.py"
 
 
 CITED = re.compile(r"\bdocs/([\w-]+\.(?:md|json|svg))")

@@ -1,7 +1,7 @@
 """Write the tables of docs that commands measure: `python tools/doc_figures.py [NAME...]`, all if none is named.
 
-A table stands between `<!-- figures: NAME -->` and `<!-- end of figures -->`. A page or a theme (motion.md, physics)
-names all of its tables; --list prints the names. A table whose data are not here stays as it is, and a line says so.
+A table stands between `<!-- figures: NAME -->` and `<!-- end of figures -->`. The name of a page (physics, motion.md)
+means all of its tables; --list prints the names. A table whose data are not here stays as it is, and a line says so.
 """
 
 from __future__ import annotations
@@ -15,18 +15,20 @@ sys.path.extend(str(Path(__file__).resolve().parents[1] / name) for name in ("to
 
 import cost_tables
 import figures_feet
+import figures_forms
 import figures_lint
 import figures_meter
 import figures_motion
 import figures_physics
 import figures_retarget
 import figures_speed
-from figures_base import ROOT, Figures, Missing
+from figures_base import ROOT, Figures, MissingError
 
 DOCS = ROOT / "docs"
 FIGURES: Figures = {
     "costs": ("cost-model.md", cost_tables.tables),
     **figures_feet.FIGURES,
+    **figures_forms.FIGURES,
     **figures_lint.FIGURES,
     **figures_meter.FIGURES,
     **figures_motion.FIGURES,
@@ -49,8 +51,6 @@ def named(words: list[str]) -> list[str]:
     out: list[str] = []
     for word in words:
         found = [name for name, (page, _) in FIGURES.items() if word in (name, page, page.removesuffix(".md"))]
-        if word in FIGURES:
-            found = [word]
         if not found:
             sys.exit(f"no figures '{word}'; there are: {', '.join(FIGURES)}")
         out += found
@@ -67,7 +67,7 @@ def main() -> None:
         path, began = DOCS / page, time.monotonic()
         try:
             made = make()
-        except Missing as missing:
+        except MissingError as missing:
             print(f"docs/{page}: {name} stays as it is: {missing} is not here", flush=True)
             continue
         text = path.read_text("utf-8")

@@ -21,22 +21,22 @@ Figures = dict[str, tuple[str, Callable[[], str]]]  # name of a block: page of d
 Values = dict[str, float]
 
 
-class Missing(Exception):
+class MissingError(Exception):
     """Data that a block needs are not here; the message says which. Its table stays as it is."""
 
 
 def corpus() -> Path:
-    """The folder of the 435 test charts. Raises Missing."""
+    """The folder of the 435 test charts. Raises MissingError."""
     if not CORPUS.is_dir():
-        raise Missing("the test charts: pytest tests/chart unpacks them to build/corpus")
+        raise MissingError("the test charts: pytest tests/chart unpacks them to build/corpus")
     return CORPUS
 
 
 def shared(name: str) -> Path:
-    """A file or folder of the shared test data. Raises Missing."""
+    """A file or folder of the shared test data. Raises MissingError."""
     path = SHARED / name
     if not path.exists():
-        raise Missing(f"../shared/data/{name}")
+        raise MissingError(f"../shared/data/{name}")
     return path
 
 

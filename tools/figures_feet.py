@@ -33,7 +33,7 @@ class Judged(NamedTuple):
 
 @cache
 def judged() -> Judged:
-    """The cross-validation of both presets, some minutes. Raises Missing."""
+    """The cross-validation of both presets, some minutes. Raises MissingError."""
     shared("feet/labels.json")
     out = Judged({}, {}, {})
     for task in fit_weights.tasks():

@@ -28,7 +28,7 @@ def rules() -> str:
 
 
 def easy_charts(preset: str) -> Iterator[ChartSubject]:
-    """The dance-single charts of low meters, with the feet of a preset. Raises Missing."""
+    """The dance-single charts of low meters, with the feet of a preset. Raises MissingError."""
     run = LintRun(LintRequest(config="default", preset=preset))
     for path in find_files([corpus()]):
         try:

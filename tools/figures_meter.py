@@ -29,7 +29,7 @@ class Ratings(NamedTuple):
 
 @cache
 def ratings() -> Ratings:
-    """The test charts and those of the score tiers, in one folder. Raises Missing."""
+    """The test charts and those of the score tiers, in one folder. Raises MissingError."""
     tiers, archive = shared("ratings/tiers.csv"), shared("ratings/charts.tar.xz")
     with tempfile.TemporaryDirectory() as folder:
         charts = Path(folder) / "dev"

@@ -104,7 +104,8 @@ def pushes() -> str:
     later = TIMES >= PUSHED + 1.15
     for direction in ("left", "ahead", "back"):
         moved = danced("neutral", f"{PUSHED:g}:{FORCE}:{direction}")
-        off = [100 * np.linalg.norm(joints(moved, (n,)) - joints(plain, (n,)), axis=2)[:, 0] for n in ("root", "skullbase")]
+        moves = [joints(moved, (name,)) - joints(plain, (name,)) for name in ("HumanoidRoot", "skullbase")]
+        off = [100 * np.linalg.norm(one, axis=2) for one in moves]
         rest = 100 * np.linalg.norm(joints(moved) - joints(plain), axis=2)[later].max()
         rows.append((direction, *(f"{one.max():.0f}" for one in off), f"{rest:.2f}"))
     return markdown(("direction", "hips, cm", "head, cm", "any joint, a second later, cm"), rows)

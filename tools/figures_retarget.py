@@ -29,7 +29,7 @@ FAULTS = {  # what is made, what is measured: the figure, its unit
 
 
 def clip(name: str) -> str:
-    """The file of a clip. Raises Missing."""
+    """The file of a clip. Raises MissingError."""
     return str(shared(f"bvh/{CLIPS[name]}.bvh"))
 
 

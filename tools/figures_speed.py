@@ -11,7 +11,7 @@ from pathlib import Path
 
 import bench
 import bench_growth
-from figures_base import DEMO, HARD, ROOT, Figures, Missing, command, corpus, markdown
+from figures_base import DEMO, HARD, ROOT, Figures, MissingError, command, corpus, markdown
 
 BENCHES = ("analyze", "solver", "folder", "sync", "motion", "film", "page")
 RUNS = 3
@@ -24,10 +24,10 @@ def where() -> str:
 
 
 def benched(name: str) -> str:
-    """The rows of `tools/bench.py NAME`. Raises Missing."""
+    """The rows of `tools/bench.py NAME`. Raises MissingError."""
     (_, rows), *_ = bench.rows_of([name])
     if not rows:
-        raise Missing("what `make bench` needs for this")
+        raise MissingError("what `make bench` needs for this")
     head = (f"{name}, on {where()}", "measured", "unit", "goal")
     return markdown(head, [(what, bench.number(value), unit, goal) for what, value, unit, goal, _ in rows])
 
@@ -38,7 +38,15 @@ def speed() -> str:
         calls = {
             "`analyze`, one song with six charts": ("analyze", DEMO, "--no-cache", "--exit-zero"),
             "`animate`, 42 s of dance": ("animate", DEMO, *HARD, "-o", f"{folder}/a.glb"),
-            "`animate --style neutral`, the same": ("animate", DEMO, *HARD, "--style", "neutral", "-o", f"{folder}/b.glb"),
+            "`animate --style neutral`, the same": (
+                "animate",
+                DEMO,
+                *HARD,
+                "--style",
+                "neutral",
+                "-o",
+                f"{folder}/b.glb",
+            ),
             "`page`, one chart": ("page", DEMO, *HARD, "-o", f"{folder}/a.html", "-q"),
             "`render`, 2 s at 1280x720": ("render", DEMO, *HARD, "--section", "20:22", "-o", f"{folder}/a.mp4", "-q"),
         }
@@ -47,7 +55,7 @@ def speed() -> str:
 
 
 def growth() -> str:
-    """Seconds and memory by minutes of a chart and by files; draws docs/growth.svg too. Raises Missing."""
+    """Seconds and memory by minutes of a chart and by files; draws docs/growth.svg too. Raises MissingError."""
     real = sorted(path for path in corpus().rglob("*") if path.suffix.lower() in (".sm", ".ssc"))
     with tempfile.TemporaryDirectory() as folder:
         points = {

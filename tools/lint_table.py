@@ -3,7 +3,8 @@
     tools/lint_table.py FOLDER --keep after.json            # lint a folder by the defaults, keep what was found
     tools/lint_table.py --before before.json --after after.json     # a table of both
 
-`tools/doc_figures.py rules` writes the table of docs/linter.md. The findings of another version: run this file with that version's package first on PYTHONPATH.
+`tools/doc_figures.py rules` writes the table of docs/linter.md. The findings of another version: run this file with
+that version's package first on PYTHONPATH.
 """
 
 from __future__ import annotations
@@ -73,7 +74,7 @@ def kept(folder: Path) -> dict[str, Any]:
 
 
 def table(before: dict[str, Any] | None, after: dict[str, Any]) -> str:
-    """Findings per 100 charts, before (if given) and after: a line for each rule and severity, a column for each band."""
+    """Findings per 100 charts, before (if given) and after: a line for each rule and severity, columns for bands."""
     kinds = [kind for kind in (before, after) if kind is not None]
     bands = sorted(after["charts"], key=lambda name: (name.split()[0], int(name.split()[1].rstrip("+").split("-")[0])))
     names = {rule: name for kind in kinds for rule, name in kind["names"].items()}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import module_file
 import numpy as np
 import pytest
 from dance_requests import baked
@@ -14,15 +15,14 @@ from dancetutor_cli.dance.footwork.turning import passing_turn
 from dancetutor_cli.dance.motion import Motion, sample
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.request import DanceRequest
-from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.settings import USUAL, default_settings, load_settings
-from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.run.errors import FileError, UsageError
 from dancetutor_cli.run.reading import charts_path, config_names, config_path
 from dancetutor_cli.run.yaml_files import read
 
 DEMO = charts_path() / "two_left_feet" / "two_left_feet.ssc"
+tool = module_file.tool("figures_forms")  # the measures of the table in docs/films.md
 FORMS = ("usual", "middle", "edge", "heels-in", "heels-out", "screen", "turning")
 
 
@@ -33,29 +33,6 @@ def danced(form: str) -> Motion:
 @pytest.fixture(scope="module")
 def motions() -> dict[str, Motion]:
     return {form: danced(form) for form in FORMS}
-
-
-def feet(motion: Motion) -> tuple[float, float]:
-    """Of feet that land alone: mean distance of the ball from the panel's middle, metres; mean toe-out, degrees."""
-    presses = [c for c in motion.contacts if c.limb in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT) and c.part == Part.WHOLE]
-    rotations, root = sample(motion, np.array([press.start + 0.002 for press in presses]))
-    places, world = world_transforms(motion.skeleton, rotations, root)
-    away, out = [], []
-    for k, press in enumerate(presses):
-        side = "lr"[press.limb]
-        ankle, ball = (places[k, motion.skeleton.index(f"{side}_{name}")] for name in ("talocrural", "metatarsal"))
-        away.append(np.hypot(*(ball[[0, 2]] - press.panel)))
-        front = quat.to_matrix(world[k, :1])[0, :, 2]
-        along = ball - ankle
-        turned = np.degrees(np.arctan2(along[0], along[2]) - np.arctan2(front[0], front[2]))
-        out.append(((turned + 180) % 360 - 180) * (1 if press.limb == Limb.LEFT_FOOT else -1))
-    return float(np.mean(away)), float(np.mean(out))
-
-
-def body_turn(motion: Motion) -> float:
-    """How far the pelvis is turned from the screen, degrees, in the mean."""
-    front = quat.to_matrix(motion.rotations[:, 0])[:, :, 2]
-    return float(np.degrees(np.abs(np.arctan2(front[:, 0], front[:, 2]))).mean())
 
 
 def test_the_forms_are_these_and_each_changes_something() -> None:
@@ -77,17 +54,17 @@ def test_usual_says_what_motion_yaml_says() -> None:
 
 
 def test_toes_land_on_the_middle_or_the_edge(motions: dict[str, Motion]) -> None:
-    middle, usual, edge = (feet(motions[form])[0] for form in ("middle", "usual", "edge"))
+    middle, usual, edge = (tool.landed(motions[form])[0] for form in ("middle", "usual", "edge"))
     assert middle < usual - 0.01 and usual < edge - 0.01
 
 
 def test_heels_are_in_or_out(motions: dict[str, Motion]) -> None:
-    out = {form: feet(motions[form])[1] for form in ("heels-out", "usual", "heels-in")}
+    out = {form: tool.landed(motions[form])[1] for form in ("heels-out", "usual", "heels-in")}
     assert out["heels-out"] < out["usual"] - 5 and out["usual"] < out["heels-in"] - 8
 
 
 def test_she_faces_the_screen_or_turns(motions: dict[str, Motion]) -> None:
-    screen, usual, turning = (body_turn(motions[form]) for form in ("screen", "usual", "turning"))
+    screen, usual, turning = (tool.body_turn(motions[form]) for form in ("screen", "usual", "turning"))
     assert screen < usual - 1 and usual < turning - 1
 
 
