@@ -20,7 +20,7 @@ from bench_growth import chart
 
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.request import DanceRequest
-from dancetutor_cli.page.work import PageRequest, make_page
+from dancetutor_cli.page.work import Page, PageRequest, make_page
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "page"))
 from page_chromium import Browser
@@ -46,28 +46,37 @@ Row = tuple[str, float, str, str, str]
 def measure() -> list[Row]:
     """Rows for tools/bench.py."""
     page = make_page(PageRequest(DanceRequest(DEMO, Selection(difficulty="challenge"))))
+    return [*sizes(page), *long_pages(), *opened(page)]
+
+
+def sizes(page: Page) -> list[Row]:
+    """Bytes by part."""
     out: list[Row] = [("page without music", len(page.html) / 1e6, "MB", "4 for two minutes", "")]
-    out += [(f"page, {part}", size / 1e3, "kB", "", "") for part, size in sorted(page.sizes.items())]
-    out += _long()
+    return out + [(f"page, {part}", size / 1e3, "kB", "", "") for part, size in sorted(page.sizes.items())]
+
+
+def opened(page: Page) -> list[Row]:
+    """Times of the clock in a browser; none where there is no Chromium."""
+    out: list[Row] = []
     if shutil.which("chromium") is None:
         return out
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "page.html"
         path.write_bytes(page.html)
-        opened, frame = [], []
+        ready_after, frame = [], []
         for _ in range(OPENINGS):
             _, ready, drawn = _look(Browser(), path)
-            opened.append(ready)
+            ready_after.append(ready)
             frame.append(drawn)
         renderer, _, by_gpu = _look(Browser(flags=BY_GPU), path, (1920, 1080))
-    out.append(("page, opening to the first frame", min(opened), "ms", "1000", ""))
+    out.append(("page, opening to the first frame", min(ready_after), "ms", "1000", ""))
     out.append(("page, a frame at 1280x720, drawn by the processor", min(frame), "ms", "", ""))
     if not any(word in renderer if word else not renderer for word in BY_PROCESSOR):
         out.append((f"page, a frame at 1920x1080, drawn by {renderer}", by_gpu, "ms", "16.7", ""))
     return out
 
 
-def _long() -> list[Row]:
+def long_pages() -> list[Row]:
     """Bytes and processor time of long pages."""
     with tempfile.TemporaryDirectory() as folder:
         requests = {}

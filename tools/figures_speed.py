@@ -10,11 +10,21 @@ from functools import partial
 from pathlib import Path
 
 import bench
+import bench_analyze
+import bench_film
+import bench_folder
 import bench_growth
+import bench_motion
+import bench_page
+import bench_solver
+import bench_sync
 from figures_base import DEMO, HARD, ROOT, Figures, MissingError, command, corpus, markdown
 
-BENCHES = ("analyze", "solver", "folder", "sync", "motion", "film", "page")
+from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.dance.request import DanceRequest
+
 RUNS = 3
+BY_THE_CLOCK = ("steady", "whole run", "first frames", "two processes", "elsewhere")  # rows that a busy machine spoils
 
 
 def where() -> str:
@@ -23,13 +33,30 @@ def where() -> str:
     return f"{os.cpu_count()} cores, Python {platform.python_version()}{load}"
 
 
-def benched(name: str) -> str:
-    """The rows of `tools/bench.py NAME`. Raises MissingError."""
-    (_, rows), *_ = bench.rows_of([name])
+def benched(name: str, measure: Callable[[], list[bench_film.Row]]) -> str:
+    """Rows of `make bench` that other work on the machine changes little. Raises MissingError."""
+    rows = [row for row in measure() if not any(words in row[0] for words in BY_THE_CLOCK)]
     if not rows:
         raise MissingError("what `make bench` needs for this")
     head = (f"{name}, on {where()}", "measured", "unit", "goal")
     return markdown(head, [(what, bench.number(value), unit, goal) for what, value, unit, goal, _ in rows])
+
+
+def page() -> list[bench_film.Row]:
+    """Bytes and processor time of pages."""
+    made = bench_page.make_page(bench_page.PageRequest(DanceRequest(ROOT / DEMO, Selection(difficulty="challenge"))))
+    return [*bench_page.sizes(made), *bench_page.long_pages()]
+
+
+BENCHES: dict[str, Callable[[], list[bench_film.Row]]] = {
+    "analyze": bench_analyze.warm,
+    "solver": bench_solver.measure,
+    "folder": bench_folder.measure,
+    "sync": bench_sync.measure,
+    "motion": bench_motion.measure,
+    "film": partial(bench_film.measure, ("good", "draft", "gl", "stages")),
+    "page": page,
+}
 
 
 def speed() -> str:
@@ -70,12 +97,8 @@ def growth() -> str:
     return "\n".join(tables)
 
 
-def _block(name: str) -> tuple[str, Callable[[], str]]:
-    return "performance.md", partial(benched, name)
-
-
 FIGURES: Figures = {
     "speed": ("performance.md", speed),
     "growth": ("performance.md", growth),
-    **{f"bench-{name}": _block(name) for name in BENCHES},
+    **{f"bench-{name}": ("performance.md", partial(benched, name, work)) for name, work in BENCHES.items()},
 }
