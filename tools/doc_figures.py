@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 import sys
 import time
+import traceback
 from pathlib import Path
 
 sys.path.extend(str(Path(__file__).resolve().parents[1] / name) for name in ("tools", "research"))
@@ -62,6 +63,7 @@ def main() -> None:
     if sys.argv[1:] == ["--list"]:
         print("\n".join(f"{name:20} docs/{page}" for name, (page, _) in FIGURES.items()))
         return
+    failed: list[str] = []
     for name in named(sys.argv[1:]) or FIGURES:
         page, make = FIGURES[name]
         path, began = DOCS / page, time.monotonic()
@@ -70,10 +72,16 @@ def main() -> None:
         except MissingError as missing:
             print(f"docs/{page}: {name} stays as it is: {missing} is not here", flush=True)
             continue
+        except Exception:  # the others are measured all the same
+            traceback.print_exc()
+            failed.append(name)
+            continue
         text = path.read_text("utf-8")
         begin = f"<!-- figures: {name} -->\n"
         path.write_text(text.replace(begin + between(text, name) + END, begin + made + END), encoding="utf-8")
         print(f"docs/{page}: {name}, {time.monotonic() - began:.0f} s", flush=True)
+    if failed:
+        sys.exit(f"not measured: {', '.join(failed)}")
 
 
 if __name__ == "__main__":

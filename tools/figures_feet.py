@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import bench_feet
 import fit_weights
-from figures_base import Figures, markdown, shared
+from feet_confidence import chart_of_calibration
+from figures_base import ROOT, Figures, markdown, shared
 
 from dancetutor_cli.feet.preset import load_preset
 
@@ -56,10 +57,12 @@ def feet_sets() -> str:
 
 
 def confidence() -> str:
-    """Predicted and actual per cent of rows, by preset, and how many rows there are."""
+    """Predicted and actual per cent of rows, by preset, and how many rows there are; draws docs/calibration-*.svg."""
     out = []
     for preset in ("pump", "itg"):
         bins = judged().sure[preset]
+        picture = chart_of_calibration(preset, bins)
+        (ROOT / "docs" / f"calibration-{preset}.svg").write_text(picture, encoding="utf-8")
         rows = [("right, %", *(f"{right:.1f}" for _, right, _ in bins)), ("rows", *(f"{n:,}" for _, _, n in bins))]
         out.append(markdown((f"predicted, {preset}", *(f"{said:.1f}" for said, _, _ in bins)), rows))
     return "\n".join(out)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import tarfile
 import tempfile
 from collections.abc import Iterator, Sequence
@@ -12,7 +13,7 @@ from typing import NamedTuple
 
 import fit_meter
 import score_fit
-from figures_base import Figures, corpus, markdown, shared
+from figures_base import ROOT, Figures, corpus, markdown, shared
 from fit_meter import Judged
 from meter_data import Labelled, labelled
 from unpacking import unpack
@@ -33,22 +34,11 @@ def ratings() -> Ratings:
     tiers, archive = shared("ratings/tiers.csv"), shared("ratings/charts.tar.xz")
     with tempfile.TemporaryDirectory() as folder:
         charts = Path(folder) / "dev"
-        charts.mkdir()
         with tarfile.open(archive) as tar:
             unpack(tar, Path(folder))
-        for song in corpus().iterdir():
-            _link(song, charts / song.name)
+        shutil.copytree(corpus(), charts, dirs_exist_ok=True)
         every = labelled(charts, fit_meter.WANTED)
         return Ratings(every, score_fit.rated(every, charts, tiers))
-
-
-def _link(source: Path, target: Path) -> None:
-    """Put a file or folder below a folder that may have parts of it."""
-    if target.is_dir():
-        for one in source.iterdir():
-            _link(one, target / one.name)
-    elif not target.exists():
-        target.symlink_to(source, target_is_directory=source.is_dir())
 
 
 @cache
@@ -58,7 +48,9 @@ def judged(pad: str) -> list[Judged]:
 
 
 def meter_errors() -> str:
-    """The mean error in levels, with the number of charts."""
+    """The mean error in levels, with the number of charts; draws docs/meter.svg too."""
+    picture = fit_meter.picture(judged("dance-single"), fit_meter.PADS["dance-single"])
+    (ROOT / "docs" / "meter.svg").write_text(picture, encoding="utf-8")
     columns = [(pad, "") for pad in fit_meter.PADS]
     columns[1:1] = [("dance-single", scale) for scale in fit_meter.PADS["dance-single"]]
 
