@@ -19,7 +19,7 @@ from pathlib import Path
 
 DANCETUTOR = Path(sys.executable).with_name("dancetutor")
 MINUTES = (1, 2, 5, 10, 20, 40, 60)
-FILES = (1, 10, 100, 1000, 4000)
+FILES = (1, 10, 100, 1000)
 BPM = 150  # sixteenths: ten rows a second
 ROWS = ("1000", "0100", "0010", "0001")
 Row = tuple[str, float, str, str, str]

@@ -96,7 +96,7 @@ def long_pages() -> list[Row]:
         ("page of 8 minutes", len(page.html) / 1e6, "MB", "", ""),
         ("page of 15 minutes", len(long.html) / 1e6, "MB", "4", ""),
         ("page of 8 minutes, processor time, its dance kept", kept, "s", "8", ""),
-        ("page of 8 minutes, processor time, danced anew (of 15)", whole, "s", "8", ""),
+        ("page of 8 minutes, processor time, danced again (of 15)", whole, "s", "8", ""),
     ]
 
 
