@@ -18,7 +18,7 @@ from dancetutor_cli.dance.performance import perform, solve
 from dancetutor_cli.dance.physics.blend import Blend
 from dancetutor_cli.dance.physics.pipeline import RagdollOptions, parse_ragdoll_options
 from dancetutor_cli.dance.physics.style import load_style
-from dancetutor_cli.dance.pieces import MARGIN, RagdollStyle, piece_of
+from dancetutor_cli.dance.pieces import MORE_PLANNED, RagdollStyle, piece_of
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig.body import world_transforms
 
@@ -57,7 +57,7 @@ def danced(style: str | None, push: str = "") -> Motion:
     request = DanceRequest(ROOT / DEMO, Selection(index=int(HARD[1])), style=style)
     (dancer,) = perform(solve(request), request).dancers
     ragdoll = None if style is None else RagdollStyle(Blend.of(load_style(style)), options)
-    return bake_piece(piece_of(dancer.plan, dancer.context, RATE, (PASSAGE, PASSAGE, MARGIN), ragdoll)).motion
+    return bake_piece(piece_of(dancer.plan, dancer.context, RATE, (PASSAGE, PASSAGE, MORE_PLANNED), ragdoll)).motion
 
 
 def joints(motion: Motion, names: Sequence[str] = ()) -> NDArray[np.float64]:

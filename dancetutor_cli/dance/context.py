@@ -167,7 +167,7 @@ def holding(settings: MotionSettings) -> MotionSettings:
     """
     body, jump, look, bar = settings.body, settings.jump, settings.look, settings.bar
     body = replace(body, leg=body.leg - bar.knees, soft_reach=body.soft_reach - bar.knees)
-    body = replace(body, stream_crouch=bar.stream_crouch, height_calm=bar.calm)
+    body = replace(body, stream_crouch=bar.stream_crouch)
     jump = replace(jump, crouch=jump.crouch / 2, follow=jump.follow / 2)
     look, groove = replace(look, torso_weight=bar.square), replace(settings.groove, hands=bar.free_hand)
     carried = settings.arms.carried_bent / 3, settings.arms.carried_upper / 3  # not far from the rail

@@ -30,6 +30,7 @@ from dancetutor_cli.feet.play import runs
 RATE, BODY_RATE = 30.0, 60.0  # checks per second whether the rail is within reach, and samples of the body's path
 # seconds of a song that are handled together, and how far beyond them the start and the end lie
 PART, PART_MARGIN = 60.0, 4.0
+TRUNK_SQUARE = 0.020  # metres more to the sides of a trunk that faces the screen: both arms are bent beside it
 TRUNK_ASIDE, TRUNK_DEEP = 0.203, 0.163  # metres, half axes of the trunk with a forearm's thickness and some air
 ALONG = np.linspace(0.15, 1.0, 5)  # points of the forearm and the hand that are checked
 ARMS_BACK = 0.022  # metres that the centre of mass lies farther back when the hands are on the rail
@@ -143,13 +144,14 @@ class Arm:
         along = (wrist - elbow) / np.linalg.norm(wrist - elbow, axis=1, keepdims=True)
         end = wrist + HAND * along
         out = np.zeros(len(elbow), dtype=bool)
+        aside = TRUNK_ASIDE + TRUNK_SQUARE * np.abs(np.cos(trunk.yaw[when]))
         hips, wrung = trunk.turned[when], trunk.yaw[when] - trunk.turned[when]
         for share in ALONG:
             point = elbow + share * (end - elbow)
             low = trunk.pelvis[when]
             up = np.clip((point[:, 1] - low[:, 1]) / np.maximum(top[:, 1] - low[:, 1], 0.1), 0.0, 1.0)
             off = quat.rotate(quat.from_axis_angle(UP, -hips - up * wrung), point - low - up[:, None] * (top - low))
-            out |= (off[:, 0] / TRUNK_ASIDE) ** 2 + (off[:, 2] / TRUNK_DEEP) ** 2 < 1.0
+            out |= (off[:, 0] / aside) ** 2 + (off[:, 2] / TRUNK_DEEP) ** 2 < 1.0
         return out
 
 
@@ -255,7 +257,9 @@ def _chance(plan: Plan, second: float) -> tuple[float, float]:
 
 # metres to each side; a place there may be better because a hand can stay longer
 GRIP_OFFSETS = (0.0, 0.05, -0.05, 0.1, -0.1)
+CHECKS = 3  # rounds in which grips are shortened to what arms reach
 CROSSING_ROUNDS = 2  # rounds of finding out how long a hand that crosses over may stay
+OVERLAP = 0.6  # seconds that a hand stays at most before and after the other one has moved
 LOOK = 10.0  # seconds that are checked together for how long a hand may stay
 
 
@@ -286,7 +290,65 @@ def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
     for side in (0, 1):
         arm = Arm(side, trunk, busy | ~places[0][:, side], context, places[1][:, side])
         found += list(_pieces(times, arm, context.settings.bar))
-    return replace(plan, grips=tuple(sorted(found, key=lambda g: (g.start, g.side))))
+    arms = [Arm(side, trunk, busy, context, apart) for side in (0, 1)]
+    found += cover_gaps(found, times, arms)
+    for _ in range(CHECKS):  # the body is elsewhere where fewer hands hold her
+        found.sort(key=lambda grip: (grip.start, grip.side))
+        trunk = trunk_of(replace(plan, grips=tuple(found)), times, context)
+        found = [part for grip in found if (part := _shortened(grip, times, trunk, busy, context)) is not None]
+    return replace(plan, grips=tuple(found))
+
+
+def _shortened(grip: Grip, times: Array, trunk: BarTrunk, busy: Flags, context: Context) -> Grip | None:
+    """Return the longest part of a grip that its arm reaches from this trunk; None if it is too short."""
+    arm = Arm(grip.side, trunk, busy, context, None if grip.across else np.zeros(len(times)))
+    a, b = np.searchsorted(times, (grip.start, grip.end + 0.5 / RATE)).tolist()
+    free = firm(arm.fits(np.full(b - a, grip.x), slice(a, b)), 0.0 if grip.across else context.settings.bar.early)
+    spans = [arm.reached(grip.x, a + first, a + end) for first, end in runs(free).tolist()]
+    start, stop = max(spans, key=lambda s: s[1] - s[0], default=(a, a))
+    shortest = context.settings.across.shortest if grip.across else context.settings.bar.shortest
+    if stop - start < shortest * RATE:
+        return None
+    return replace(grip, start=float(times[start]), end=float(times[stop - 1]))
+
+
+def cover_gaps(grips: list[Grip], times: Array, arms: list[Arm]) -> list[Grip]:
+    """Return more grips: a hand holds the rail while the other one moves along it; nobody leans on nothing."""
+    bar, out = arms[0].settings.bar, list[Grip]()
+    held = np.zeros(len(times), dtype=bool)
+    for grip in grips:
+        held[_between(times, grip.start, grip.end)] = True
+    for a, b in runs(~held).tolist():
+        if a > 0 and b < len(times) and (b - a) / RATE < bar.leave:
+            for arm in arms:
+                own = [g for g in (*grips, *out) if g.side == arm.side]
+                if (cover := _over_gap(arm, own, times, (a, b))) is not None:
+                    out.append(cover)
+                    break
+    return out
+
+
+def _over_gap(arm: Arm, own: list[Grip], times: Array, gap: tuple[int, int]) -> Grip | None:
+    """Return a grip of the arm over the checks of the gap and some time around it, None if the hand cannot be there.
+
+    own : the other grips of this hand
+    """
+    bar, (a, b) = arm.settings.bar, gap
+    more, pause = round(OVERLAP * RATE), 2 * round(bar.reach_time * RATE)
+    low, high = max(a - more, 0), min(b + more, len(times))
+    for grip in own:
+        first, last = np.searchsorted(times, (grip.start, grip.end)).tolist()
+        low, high = (low, min(high, first - pause)) if first >= b else (max(low, last + pause), high)
+    if low > a or high < b:
+        return None
+    for aside in GRIP_OFFSETS:
+        x = float(on_rail(np.array([arm.place[a:b].mean() + (1.0, -1.0)[arm.side] * aside]), arm.bar, bar.from_end)[0])
+        free = firm(arm.fits(np.full(high - low, x), slice(low, high)), 0.0)
+        for first, end in (low + runs(free)).tolist():
+            start, stop = arm.reached(x, first, end)
+            if start <= a and stop >= b and stop - start >= bar.shortest * RATE:
+                return Grip(float(times[start]), float(times[stop - 1]), arm.side, x)
+    return None
 
 
 def _busy(plan: Plan, times: Array, settings: MotionSettings) -> Flags:
@@ -327,14 +389,9 @@ def _longest(arm: Arm, start: int, end: int) -> tuple[float, int]:
         while k < end:
             until = min(k + round(LOOK * RATE), end)
             free = firm(arm.fits(np.full(until - k, x), slice(k, until)), arm.settings.bar.early)
-            k += _first(~free)
+            k += len(free) if free.all() else int(np.argmin(free))
             if k < until:
                 break
         if k > stop:
             best, stop = x, k
     return best, stop
-
-
-def _first(flags: Flags) -> int:
-    """Return the index of the first True, or the length if there is none."""
-    return int(np.argmax(flags)) if flags.any() else len(flags)

@@ -148,7 +148,7 @@ class BarSettings:
     knees: Metres
     stream_crouch: Metres
     square: Ratio
-    calm: Seconds
+    calmer: Ratio
     free_hand: Metres
     let_go: Metres
     reach_time: Seconds

@@ -22,8 +22,8 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import SIDES, centre_of_mass, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import cubic, sample_path, smooth, smooth_path, upper_envelope
-from dancetutor_cli.dance.trajectory.balance import rotation_zmp_offset
 from dancetutor_cli.dance.trajectory.legs import push_off, raised
+from dancetutor_cli.dance.trajectory.momentum import rotation_zmp_offset
 from dancetutor_cli.dance.trajectory.posture import RoughBake, Trajectory, body_trajectory
 from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.dance.waits import waiting_at

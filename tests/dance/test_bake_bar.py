@@ -146,3 +146,24 @@ def test_files_hold_the_bar(held: Motion, tmp_path: Path) -> None:
     (length,) = struct.unpack_from("<I", data, 12)
     extras = json.loads(data[20 : 20 + length])["animations"][0]["extras"]
     assert extras["bar"]["height"] == held.bar.height and len(extras["bar"]["grips"]) == len(held.grips)  # type: ignore[union-attr]
+
+
+WIDE = [(1.0 + 0.5 * k, {(0, 2, 3, 2)[k % 4]: (L, R, R, L)[k % 4]}) for k in range(40)]
+
+
+def test_a_hand_holds_the_bar_while_the_other_one_moves_along_it() -> None:
+    """She leans on it for 15 s, and there is no moment at which nobody holds it."""
+    motion = bake(chart().timing, play(WIDE), pad(), bar=True, settings=BOTH)
+    assert sum(g.end < 15.0 for g in motion.grips) > 3, "hands move along the bar"
+    for second in np.arange(0.0, 15.0, 0.05):
+        assert any(g.start - 0.04 <= second <= g.end + 0.04 for g in motion.grips), f"no hand at {second:.2f} s"
+
+
+@pytest.mark.parametrize("both", [True, False])
+def test_without_a_hand_on_the_bar_her_feet_carry_her(both: bool) -> None:
+    """Moments that no sole can supply, where nobody holds the bar: she stood behind her feet there."""
+    motion = bake(chart().timing, play(WIDE), pad(), bar=True, **({"settings": BOTH} if both else {}))
+    measured = report(motion)
+    for name in ("residual force, median", "residual moment, median"):
+        assert measured[name].met
+    assert measured["residual moment, 99th percentile"].value < 0.1, "0.18 to 0.24 before"

@@ -9,20 +9,17 @@ import numpy as np
 from dancetutor_cli.dance.foot_path import Feet, FootPath
 from dancetutor_cli.dance.plan import LEAST_FLIGHT
 from dancetutor_cli.dance.quadratic import BandedLeastSquares, Limits, Solution, differences, solve_surely
-from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import (
-    GRAVITY,
     SOLE_BACK_HEEL,
     SOLE_BACK_TOES,
     SOLE_FRONT,
     SOLE_HALF_WIDTH,
     ball_to_ankle,
-    mass_points,
 )
-from dancetutor_cli.dance.rig.skeleton import Skeleton, dancer_skeleton
+from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_body import BodySettings, LayerSettings
-from dancetutor_cli.dance.smoothing import low_pass, sample_path, steady_spline
+from dancetutor_cli.dance.smoothing import low_pass, sample_path, soft_excess, steady_spline
 from dancetutor_cli.dance.trajectory.height import span
 from dancetutor_cli.dance.units import Array, Flags
 
@@ -104,32 +101,10 @@ def along_sides(across: Array, places: Array) -> Array:
     return np.asarray(np.einsum("nda,na->nd", across, places))
 
 
-# The offset of the zero-moment point by limbs that swing about the centre of mass.
-#
-# In the cart-table model the body is one point. A body whose parts turn about that point with the momentum L pushes
-# with the moment L', and the ground balances it farther away by (L'_z, -L'_x) / (m (y'' + g)) (Popovic, Goswami and
-# Herr, 2005). In streams these are decimetres, of which the soles can give centimetres.
+# The best zero-moment point of a body whose limbs turn about its centre of mass (`momentum.rotation_zmp_offset`).
 
 AGAINST = 0.7  # largest part of the way from the middle of the soles to their edge: nearer to the edge, balance is lost
 FARTHEST = 0.03  # metres; largest offset: beyond it, ankles of wide stands bend too far before a leap
-LEAST_CARRIED = 0.4  # share of the dancer's weight: feet with less load hold no moment worth planning for
-
-
-def rotation_zmp_offset(skeleton: Skeleton, positions: Array, world: Array, rate: float) -> Array:
-    """Return the offset of the zero-moment point from that of the point mass, (f, 2) metres along x and z, below 10 Hz.
-
-    positions (f, j, 3), world (f, j, 4) : of the joints, as from `world_transforms`, at `rate` per second
-    """
-    joints, masses, offsets = mass_points(skeleton)
-    places = positions[:, joints] + quat.rotate(world[:, joints], offsets)
-    mass = np.einsum("m,fmx->fx", masses, places)
-    arms = places - mass[:, None]
-    speeds = np.gradient(arms, 1.0 / rate, axis=0)
-    spin = low_pass(np.einsum("m,fmx->fx", masses, np.cross(arms, speeds)), rate)
-    moment = np.gradient(spin, 1.0 / rate, axis=0)
-    rise = np.gradient(np.gradient(low_pass(mass[:, 1], rate), 1.0 / rate), 1.0 / rate)
-    carried = np.maximum(rise + GRAVITY, LEAST_CARRIED * GRAVITY)
-    return np.asarray(np.column_stack((moment[:, 2], -moment[:, 0])) / carried[:, None])
 
 
 def counter_rotation_zmp(support: Support, turning: Array) -> Array:
@@ -157,6 +132,9 @@ NODE_RATE, ROUGH_RATE = 80.0, 40.0  # nodes per second of the path, and of a rou
 UNIT = 0.03  # metres; scales the programme
 NARROWER, NARROWEST = 0.05, 0.01  # metres: largest move of a limit in a round, and least distance of two limits
 NEAR, END = 1e-5, 0.1  # weight of the middle of the soles in general, and at both ends of the path
+LEANS = (
+    0.15  # metres behind the farthest place of the centre of mass to which hands on a bar carry the zero-moment point
+)
 GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # costs of leaving the soles and of stretching, see `quadratic.Limits`
 
 
@@ -167,7 +145,8 @@ class Pendulum:
     times : (n,) seconds; slowness : (n,) 1 / omega^2 = y / (y'' + g), seconds squared; ignored in flight
     seen : (n,) slowness without trembling above 10 Hz
     offset : (n, 2) from the pelvis to the centre of mass, as far as known
-    turning : (n, 2) as from `rotation_zmp_offset`, as far as known
+    turning : (n, 2) as from `momentum.rotation_zmp_offset`, as far as known
+    rail : the bar, while hands hold it
     """
 
     times: Array
@@ -175,6 +154,39 @@ class Pendulum:
     seen: Array
     offset: Array
     turning: Array
+    rail: Rail | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Rail:
+    """A bar behind the dancer at n even times: while a hand holds it, it supports her, and she stays within reach.
+
+    ahead : (n,) farthest place of the centre of mass along z, metres
+    held : (n,) whether a hand holds it; soft : metres over which the wish to be ahead of that place fades
+    """
+
+    ahead: Array
+    held: Flags
+    soft: float
+
+    def at(self, times: Array, nodes: Array) -> Rail:
+        """Return the rail at other times."""
+        held = np.interp(nodes, times, self.held.astype(np.float64)) > 0.999
+        return replace(self, ahead=np.interp(nodes, times, self.ahead), held=held)
+
+    def supported(self, support: Support) -> Support:
+        """Return the support with a place a little farther back than where she stays within reach."""
+        on = self.held[:, None]
+        place = np.column_stack((support.middle[:, 0], self.ahead - LEANS))
+        along = along_sides(support.across, place)
+        low = np.where(on, np.minimum(support.low, along), support.low)
+        high = np.where(on, np.maximum(support.high, along), support.high)
+        return replace(support, low=low, high=high)
+
+    def within_reach(self, place: Array) -> Array:
+        """Return places (n, 2) that are no farther than the arms let her, softly, where a hand holds the rail."""
+        near = self.ahead - soft_excess(self.ahead - place[:, 1], self.soft)
+        return np.column_stack((place[:, 0], np.where(self.held, near, place[:, 1])))
 
 
 def balanced_path(
@@ -214,6 +226,7 @@ def balanced_path(
     room = _room(feet, ball_to_ankle(dancer_skeleton()), body.farthest)
     feet = _carrying(feet, rate)
     support = support_of(feet, float(np.radians(body.heel_carries)))
+    rail = None if pendulum.rail is None else pendulum.rail.at(times, nodes)
     down = np.stack([f.down for f in feet])
     both = np.asarray(down.all(axis=0))
     stepping = ~both | _brief(both, settings.step.longest * rate)
@@ -221,6 +234,10 @@ def balanced_path(
     middle = middle + hand * _sway(feet, nodes, settings.layers)
     if shift is not None:
         middle = middle + _shifted(feet, settings.wait.onto, np.interp(nodes, times, shift), slowness, rate)
+    if rail is not None:
+        support, middle = rail.supported(support), rail.within_reach(middle)
+        farthest = np.where(rail.held, rail.ahead - rail.soft / 2 - offset[:, 1], np.inf)
+        room = room[0], np.column_stack((room[1][:, 0], np.minimum(room[1][:, 1], farthest)))
     middle_weight = np.where(stepping, body.middle_weight_fast, body.middle_weight)
     weight = np.where(both, middle_weight, body.foot_weight)
     flight: Flags = np.asarray(~down.any(axis=0))

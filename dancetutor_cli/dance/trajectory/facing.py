@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dancetutor_cli.dance.motion import Bar, Grip
+from dancetutor_cli.dance.motion import Grip
 from dancetutor_cli.dance.plan import Plan, Press, Turn
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_arms import AcrossSettings, BarSettings, HandSettings
@@ -14,11 +14,10 @@ from dancetutor_cli.dance.smoothing import (
     no_faster,
     smooth,
     smooth_path,
-    soft_excess,
     upper_envelope,
 )
 from dancetutor_cli.dance.trajectory.legs import Course
-from dancetutor_cli.dance.units import Array
+from dancetutor_cli.dance.units import Array, Flags
 
 # The bends and turns of the body for palms that go down to panels.
 
@@ -229,13 +228,9 @@ def leaning_share(grips: tuple[Grip, ...], times: Array, settings: BarSettings) 
     return out
 
 
-def limit_to_bar(path: Array, share: Array, bar: Bar, settings: BarSettings, nearer: Array) -> Array:
-    """Return a path (n, 2) over the ground that stays within reach of the bar, softly, in proportion to `share` (n,).
-
-    nearer : (n,) metres that it must be nearer than usual
-    """
-    most = settings.forward - nearer
-    over = path[:, 1] - bar.behind - most
-    # a soft minimum of the place and the farthest one: -log(exp(-a) + exp(-b))
-    near = bar.behind + most - soft_excess(-over, settings.soft)
-    return np.column_stack((path[:, 0], path[:, 1] + share * (near - path[:, 1])))
+def held_at(grips: tuple[Grip, ...], times: Array) -> Flags:
+    """Return whether a hand holds the bar at the times (n,)."""
+    out = np.zeros(len(times), dtype=bool)
+    for grip in grips:
+        out |= (times >= grip.start) & (times <= grip.end)
+    return out

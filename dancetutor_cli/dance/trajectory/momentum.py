@@ -20,9 +20,11 @@ import numpy as np
 
 from dancetutor_cli.dance.foot_path import Feet
 from dancetutor_cli.dance.quadratic import BandedLeastSquares, differences
-from dancetutor_cli.dance.rig.body import CHEST_INERTIA, PELVIS_INERTIA, leg_masses
+from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import CHEST_INERTIA, GRAVITY, PELVIS_INERTIA, leg_masses, mass_points
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.settings_arms import ArmSettings
+from dancetutor_cli.dance.smoothing import low_pass
 from dancetutor_cli.dance.trajectory.legs import Course, above_at_rest, ankle_of, upright_hips
 from dancetutor_cli.dance.units import Array
 
@@ -103,3 +105,29 @@ def lower_momentum(feet: Feet, course: Course, height: Array, skeleton: Skeleton
             carried -= share * off
             upper -= share
     return np.asarray(out + np.cross(carried, np.gradient(carried, axis=0)) * course.rate / upper)
+
+
+# The offset of the zero-moment point by limbs that swing about the centre of mass.
+#
+# In the cart-table model the body is one point. A body whose parts turn about that point with the momentum L pushes
+# with the moment L', and the ground balances it farther away by (L'_z, -L'_x) / (m (y'' + g)) (Popovic, Goswami and
+# Herr, 2005). In streams these are decimetres, of which the soles can give centimetres.
+
+LEAST_CARRIED = 0.4  # share of the dancer's weight: feet with less load hold no moment worth planning for
+
+
+def rotation_zmp_offset(skeleton: Skeleton, positions: Array, world: Array, rate: float) -> Array:
+    """Return the offset of the zero-moment point from that of the point mass, (f, 2) metres along x and z, below 10 Hz.
+
+    positions (f, j, 3), world (f, j, 4) : of the joints, as from `world_transforms`, at `rate` per second
+    """
+    joints, masses, offsets = mass_points(skeleton)
+    places = positions[:, joints] + quat.rotate(world[:, joints], offsets)
+    mass = np.einsum("m,fmx->fx", masses, places)
+    arms = places - mass[:, None]
+    speeds = np.gradient(arms, 1.0 / rate, axis=0)
+    spin = low_pass(np.einsum("m,fmx->fx", masses, np.cross(arms, speeds)), rate)
+    moment = np.gradient(spin, 1.0 / rate, axis=0)
+    rise = np.gradient(np.gradient(low_pass(mass[:, 1], rate), 1.0 / rate), 1.0 / rate)
+    carried = np.maximum(rise + GRAVITY, LEAST_CARRIED * GRAVITY)
+    return np.asarray(np.column_stack((moment[:, 2], -moment[:, 0])) / carried[:, None])

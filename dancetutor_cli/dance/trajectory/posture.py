@@ -14,16 +14,16 @@ from dancetutor_cli.dance.rig.body import GRAVITY
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_body import BodySettings, LookSettings
 from dancetutor_cli.dance.smoothing import Controller, follow, low_pass, smooth, smooth_path
-from dancetutor_cli.dance.trajectory.balance import Pendulum, balanced_path
+from dancetutor_cli.dance.trajectory.balance import Pendulum, Rail, balanced_path
 from dancetutor_cli.dance.trajectory.facing import (
     bent_down,
     chest_and_head,
     crossing_share,
+    held_at,
     leaned_across,
     leaning_share,
     leaning_tilt,
     limit_head_yaw,
-    limit_to_bar,
     pelvis_yaw,
     reaching,
 )
@@ -89,7 +89,7 @@ class RoughBake:
     """The results of a rough bake. trajectory : that it was of
 
     above : (n, 3), centre of mass minus root
-    turning : (n, 2) as of `balance.rotation_zmp_offset`, or None if it is not known
+    turning : (n, 2) as of `momentum.rotation_zmp_offset`, or None if it is not known
     deeper : (p,) how far each press of a palm drew the root below where it
     was wanted, metres, or None for none
     hips : (n, 2, 3), from the root to each hip, None: as of an upright pelvis
@@ -120,7 +120,9 @@ def body_trajectory(
     crouch = jump_crouch(plan, times, settings.jump)
     tempo = tempo_factor(plan, times, settings)
     waiting = waiting_at(plan, times, context)
-    occupation = Occupation(tempo, reached.sum(axis=1) + held + own, waiting.share)
+    across = crossing_share(plan.grips, times, settings.across)
+    at_bar = np.maximum(settings.bar.calmer * held, np.abs(across))
+    occupation = Occupation(tempo, reached.sum(axis=1) + at_bar + own, waiting.share)
     groove = groove_of(plan, times, occupation, context)
     leg = settings.body.leg - settings.body.stream_crouch * tempo - crouch
     bent = bent_down(plan.presses, None if known is None else known.deeper, times, settings.hands)
@@ -144,7 +146,6 @@ def body_trajectory(
     chest = chest + answer.twist
     calm = smooth_path(tempo[:, None], np.ones(len(times)), course.rate, settings.body.lean_time)[:, 0]
     lean = settings.body.lean + settings.body.stream_lean * calm
-    across = crossing_share(plan.grips, times, settings.across)
     lean = np.radians(lean - held * (1.0 - np.abs(across)) * (lean + settings.bar.lean_back))
     leant = lean[:, None] * ahead + leaned_across(across, settings.across)
     tilt = leaning_tilt(plan.presses, course, chest, leant, settings)
@@ -212,10 +213,12 @@ def _course(
     if known is not None:  # heels that rise for their ankles' sake carry nothing; palms do, on their way already
         up = known.trajectory.heels * (1.0 - reaching(plan.presses, times, settings.hands).max(axis=1, keepdims=True))
         feet = raised(feet, up)
-    mass, swept = balanced_path(feet, pendulum, settings, 0 if known is None else known.tightened, plan.hand, shift)
     if context.bar is not None:
         nearer = settings.across.nearer * np.abs(crossing_share(plan.grips, times, settings.across))
-        mass = limit_to_bar(mass, leaning_share(plan.grips, times, settings.bar), context.bar, settings.bar, nearer)
+        ahead = context.bar.behind + settings.bar.forward - nearer
+        held = held_at(plan.grips, times)
+        pendulum = replace(pendulum, rail=Rail(ahead, held, settings.bar.soft))
+    mass, swept = balanced_path(feet, pendulum, settings, 0 if known is None else known.tightened, plan.hand, shift)
     return Course(times, mass, above, hips, yaw), (BALANCE,) if swept else ()
 
 

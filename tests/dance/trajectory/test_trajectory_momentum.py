@@ -9,13 +9,8 @@ from dancetutor_cli.dance.foot_path import FootPath
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import GRAVITY, centre_of_mass, mass_points, world_transforms
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
-from dancetutor_cli.dance.trajectory.balance import (
-    AGAINST,
-    FARTHEST,
-    counter_rotation_zmp,
-    rotation_zmp_offset,
-    support_of,
-)
+from dancetutor_cli.dance.trajectory.balance import AGAINST, FARTHEST, counter_rotation_zmp, support_of
+from dancetutor_cli.dance.trajectory.momentum import rotation_zmp_offset
 
 RATE = 240.0
 

@@ -8,7 +8,7 @@ from scipy.spatial import ConvexHull
 
 from dancetutor_cli.dance.foot_path import FootPath
 from dancetutor_cli.dance.rig.body import SOLE_BACK_HEEL, SOLE_FRONT, SOLE_HALF_WIDTH
-from dancetutor_cli.dance.trajectory.balance import support_of
+from dancetutor_cli.dance.trajectory.balance import LEANS, Rail, along_sides, support_of
 
 HEEL = np.radians(1.2)
 
@@ -49,3 +49,18 @@ def test_the_limits_are_the_soles_however_they_are_turned(down: tuple[bool, bool
         beyond = (points @ hull[:, :2].T + hull[:, 2]).max(axis=1)
         assert allowed[beyond < 0.0].all()  # nothing that carries is forbidden
         assert beyond[allowed].max(initial=0.0) <= slack
+
+
+def test_hands_on_a_bar_support_her_behind_her_soles_and_keep_her_near() -> None:
+    """The zero-moment point may be a little behind the farthest place of the mass, only while a hand holds the bar."""
+    support = support_of(feet_of(np.random.default_rng(4), 60, (True, True)), HEEL)
+    ahead, held = np.full(60, -0.6), np.arange(60) % 2 == 0
+    rail = Rail(ahead, held, 0.05)
+    more = rail.supported(support)
+    place = np.column_stack((support.middle[:, 0], ahead - LEANS))
+    along = along_sides(support.across, place)
+    carried = ((along >= more.low - 1e-9) & (along <= more.high + 1e-9)).all(axis=1)
+    assert carried.tolist() == held.tolist(), "no sole reaches so far back"
+    assert (more.low <= support.low).all() and (more.high >= support.high).all()
+    near = rail.within_reach(support.middle)
+    assert (near[held, 1] < -0.6).all() and np.array_equal(near[~held], support.middle[~held])
