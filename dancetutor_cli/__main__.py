@@ -71,7 +71,9 @@ def _report_end(error: BaseException) -> int:
         _say("interrupted")
         return 130
     if isinstance(error, click.ClickException):
-        error.show()
+        from dancetutor_cli.commands.arguments import usage_message
+
+        _say(usage_message(error))
     elif isinstance(error, DancetutorError):
         _say(str(error))
         return error.exit_status

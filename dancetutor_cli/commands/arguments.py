@@ -16,7 +16,7 @@ from click.shell_completion import CompletionItem
 
 from dancetutor_cli.chart.names import COLUMNS, DIFFICULTIES
 from dancetutor_cli.chart.selection import find_files, without_links_out
-from dancetutor_cli.run.errors import UsageError
+from dancetutor_cli.run.errors import UsageError, did_you_mean
 from dancetutor_cli.run.files import UCS_SUFFIX, plain_name, write_atomic
 from dancetutor_cli.run.foreign_text import safe
 from dancetutor_cli.run.reading import config_names
@@ -171,6 +171,24 @@ def report_error(error: Exception | str) -> None:
 # The question before hours of work, for films and dances that are longer than anyone intends.
 
 LONG = 20 * 60.0  # seconds of film or motion; longer ones need a confirmation
+
+
+def usage_message(error: click.ClickException) -> str:
+    """Return what click found wrong in one line: which option or argument, what to do, and where the help is."""
+    context = getattr(error, "ctx", None)
+    name = getattr(error, "option_name", "")
+    if isinstance(error, click.NoSuchOption):
+        text = f"there is no option {name}{did_you_mean(name, error.possibilities or ())}"
+    elif isinstance(error, click.BadOptionUsage):
+        text = f"{name} needs a value" if "requires" in error.message else f"{name} takes no value"
+    elif isinstance(error, click.BadParameter) and error.param is not None:
+        hint = error.param.get_error_hint(context).replace("'", "").removesuffix("...")
+        text = f"{hint} is missing" if isinstance(error, click.MissingParameter) else f"{hint}: {error.message}"
+    else:
+        text = error.format_message()
+        text = text[:1].lower() + text[1:]
+    text = text.rstrip(".")
+    return text if context is None or ";" in text else f"{text}; see {context.command_path} --help"
 
 
 def confirm_long(what: str, verb: str) -> None:
