@@ -42,16 +42,17 @@ def apply(data: bytes, splices: Iterable[Splice]) -> bytes:
     return b"".join(out)
 
 
-# A unified diff of two versions of a file that differ in some lines and in lines added at the end.
+# A unified diff of two versions of a file that differ in some lines, and in lines added or removed at one place.
 #
-# Markers never add a line in the middle of a file, so lines are compared one to one, which is exact and fast.
+# Lines are compared one to one, from the start and, if the numbers of lines differ, also from the end. That is fast.
+# It is exact unless lines were added or removed at several places; then it is longer than necessary.
 
 CONTEXT = 3
 
 
 def unified_diff(name: str, old: bytes | None, new: bytes | None) -> Iterator[str]:
     """Yield the lines of the diff, without line breaks; none if both versions are the same."""
-    pairs = list(zip_longest(_lines(old), _lines(new)))
+    pairs = _pairs(_lines(old), _lines(new))
     different = [i for i, (a, b) in enumerate(pairs) if a != b]
     if not different:
         return
@@ -60,9 +61,18 @@ def unified_diff(name: str, old: bytes | None, new: bytes | None) -> Iterator[st
     yield f"+++ {'/dev/null' if new is None else name}"
     for start, end in _hunks(different, len(pairs)):
         part = pairs[start:end]
-        counts = [sum(1 for pair in part if pair[side] is not None) for side in (0, 1)]
-        yield f"@@ -{_range(start, counts[0])} +{_range(start, counts[1])} @@"
+        starts, counts = ([sum(p[side] is not None for p in some) for side in (0, 1)] for some in (pairs[:start], part))
+        yield f"@@ -{_range(starts[0], counts[0])} +{_range(starts[1], counts[1])} @@"
         yield from _body(part, encoding)
+
+
+def _pairs(old: list[bytes], new: list[bytes]) -> list[tuple[bytes | None, bytes | None]]:
+    """Return the lines of both versions side by side; None where a version has no such line."""
+    same, most = 0, min(len(old), len(new)) * (len(old) != len(new))
+    while same < most and old[-1 - same] == new[-1 - same]:
+        same += 1
+    middle = zip_longest(old[: len(old) - same], new[: len(new) - same])
+    return [*middle, *zip(old[len(old) - same :], new[len(new) - same :], strict=True)]
 
 
 def _lines(data: bytes | None) -> list[bytes]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from dancetutor_cli.chart.edits import apply, check_edit, unified_diff
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.names import TICKS_PER_MEASURE, is_lights
+from dancetutor_cli.feet.limbs import MARKER
 from dancetutor_cli.feet.preset import Preset, preset_for
 from dancetutor_cli.lint import fix_edits
 from dancetutor_cli.lint.analysis import AnalyzeTask, load_song
@@ -143,7 +144,7 @@ def _notes(job: FixTask, session: FixSession) -> Iterator[str]:
     if all(one.fix.is_silent for one in session.fixed):
         return
     path = job.task.path
-    if b"{dt1 " in session.song.data:
+    if any(MARKER.search(session.song.data, *chart.notes_span) for chart in session.song.charts):
         yield f"{path}: the feet in its measures are from before this edit; run `dancetutor annotate` to update them"
 
 

@@ -75,8 +75,17 @@ def remove(song: Song) -> list[Splice]:
         return []
     start, end = tag.spans[0]
     value, _ = blanked(song.data[start:end])
-    found = [match.span() for match in _ENTRY.finditer(value)]
-    spans = [_with_comma(value, start, end + len(_ALONE) * value.startswith(_ALONE, end)) for start, end in found]
+    entries: list[tuple[int, int]] = []
+    for match in _ENTRY.finditer(value):
+        first, last = match.start(), match.end() + len(_ALONE) * value.startswith(_ALONE, match.end())
+        if entries and value[entries[-1][1] : first].strip() in (
+            b",",
+            b"",
+        ):  # neighbours go with the comma between them
+            entries[-1] = entries[-1][0], last
+        else:
+            entries.append((first, last))
+    spans = [_with_comma(value, *entry) for entry in entries]
     if not spans:
         return []
     rest = b"".join(value[a:b] for a, b in _between(spans, len(value)))

@@ -112,7 +112,7 @@ def _files(path: Path, old: bytes | None) -> dict[str, Any]:
 
 
 def _holds_charts(data: Any) -> bool:
-    return all(isinstance(file["charts"], list) for file in data["files"].values())
+    return all(isinstance(entry["index"], int) for file in data["files"].values() for entry in file["charts"])
 
 
 def _find(files: dict[str, Any], song: Song, chart: Chart) -> Any:

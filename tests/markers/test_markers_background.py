@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import difflib
 import itertools
 from pathlib import Path
 
 import pytest
 from markers_songs import SM_CHART, song_of
 
-from dancetutor_cli.chart.edits import apply
+from dancetutor_cli.chart.edits import apply, unified_diff
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.markers.background import add, check_name, entry, remove
@@ -52,6 +53,29 @@ def test_it_comes_out_too_after_an_editor_has_put_more_behind_it() -> None:
     song = sm(b"")
     data = apply(song.data, add(song, FILM).splices).replace(ALONE.encode(), ALONE.encode() + b",8=b.avi=1")
     assert apply(data, remove(song_of(data))) == sm(b"8=b.avi=1").data
+
+
+FILM_B = b"8=song-easy.dancetutor.mp4=1.000=0=0=0=StretchNoLoop===="
+
+
+@pytest.mark.parametrize(
+    ("before", "after"), [(b"", b""), (b"0=a.avi=1", b""), (b"", b"16=b.avi=1"), (b"0=a.avi=1", b"16=b.avi=1")]
+)
+def test_two_films_side_by_side_come_out_with_the_commas_between_them(before: bytes, after: bytes) -> None:
+    """The user has copied an entry, and changed its beat and its file."""
+    song = sm(None)
+    films = entry(song, FILM) + b"," + FILM_B
+    joined = sm(b",".join(part for part in (before, films, after) if part))
+    assert apply(joined.data, remove(joined)) == sm(b",".join(part for part in (before, after) if part)).data
+
+
+def test_the_diff_of_lines_that_are_removed_from_the_middle_is_short() -> None:
+    old = b"".join(b"line %d\n" % k for k in range(40))
+    new = old.replace(b"line 10\nline 11\n", b"").replace(b"line 9\n", b"other\n")
+    diff = list(unified_diff("a.sm", old, new))
+    assert diff == list(
+        difflib.unified_diff(old.decode().splitlines(), new.decode().splitlines(), "a.sm", "a.sm", lineterm="")
+    )
 
 
 @pytest.mark.parametrize(("offset", "beat"), [("0.000", "0.000"), ("-0.500", "-1.000"), ("0.250", "0.500")])

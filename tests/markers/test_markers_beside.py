@@ -115,7 +115,12 @@ def test_the_sidecar_notices_that_notes_have_changed() -> None:
     assert sidecar.check_entry(path, old, commented, commented.charts[0], old) is None
 
 
-@pytest.mark.parametrize("text", [b"", b"{}", b"[1]", b'{"program": "other", "files": {}}', b"\xff", b'{"files": 3}'])
+ODD_CHARTS = b'{"schema": 1, "program": "dancetutor", "files": {"song.sm": {"charts": [1]}}}'
+
+
+@pytest.mark.parametrize(
+    "text", [b"", b"{}", b"[1]", b'{"program": "other", "files": {}}', b"\xff", b'{"files": 3}', ODD_CHARTS]
+)
 def test_a_file_that_is_no_sidecar_is_left_alone(text: bytes) -> None:
     song = two_charts()
     with pytest.raises(FileError, match="not a sidecar"):
