@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.findings import Finding
 
 SCHEMA = 1
+NO_BEAT = -(2**31)  # the place of a finding about a whole chart
 # path of the chart file relative to the baseline's folder, chart, rule, beat in 1/48 (the line, for a file's finding)
 Key = tuple[str, str, str, int]
 
@@ -38,7 +39,10 @@ class Baseline:
 
     def key(self, file: str, chart: str, finding: Finding) -> Key:
         """Return the key that identifies a finding: file, chart, rule and beat."""
-        place = (finding.line or 0) if finding.beat is None else round(finding.beat * TICKS_PER_BEAT)
+        if finding.beat is None:
+            place = NO_BEAT if chart else finding.line or 0
+        else:
+            place = round(finding.beat * TICKS_PER_BEAT)
         return self._relative(file), chart, finding.rule, place
 
     def absorbs(self, key: Key) -> bool:
@@ -84,7 +88,8 @@ class Baseline:
 
 def _entry(key: Key, count: int) -> dict[str, Any]:
     file, chart, rule, place = key
-    where = {"beat": round(place / TICKS_PER_BEAT, 6)} if chart else {"line": place}
+    beat = None if place == NO_BEAT else round(place / TICKS_PER_BEAT, 6)
+    where = {"beat": beat} if chart else {"line": place}
     return {"file": file, "chart": chart, "rule": rule, **where, **({"count": count} if count > 1 else {})}
 
 
@@ -99,7 +104,8 @@ def load_baseline(path: Path) -> Baseline:
     known: Counter[Key] = Counter()
     for number, entry in enumerate(data["entries"]):
         try:
-            place = round(float(entry["beat"]) * TICKS_PER_BEAT) if entry["chart"] else int(entry["line"])
+            beat = entry["beat"] if entry["chart"] else int(entry["line"]) / TICKS_PER_BEAT
+            place = NO_BEAT if beat is None else round(float(beat) * TICKS_PER_BEAT)
             known[str(entry["file"]), str(entry["chart"]), str(entry["rule"]), place] += int(entry.get("count", 1))
         except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
             raise FileError(path, f"entry {number} is not a finding with file, chart, rule and beat") from None

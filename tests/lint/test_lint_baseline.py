@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -24,6 +26,16 @@ def test_it_survives_the_file(tmp_path: Path) -> None:
     read = load_baseline(path)
     assert read.allowed == empty.replaced(keys).allowed
     assert sum(read.allowed.values()) == 3
+
+
+def test_a_finding_about_a_whole_chart_has_no_beat_and_no_line(tmp_path: Path) -> None:
+    """It is known again after lines were added above it."""
+    path = tmp_path / "baseline.json"
+    keys = [Baseline(path).key("x.sm", CHART, replace(TITLE, line=line)) for line in (3, 8)]
+    assert keys[0] == keys[1]
+    Baseline(path).replaced(keys[:1]).write()
+    assert json.loads(path.read_text("utf-8"))["entries"][0]["beat"] is None
+    assert load_baseline(path).absorbs(keys[1])
 
 
 def test_each_entry_absorbs_one_finding_and_other_beats_none(tmp_path: Path) -> None:
