@@ -69,6 +69,8 @@ class SongReader:
         if skipped:
             return ChartError(self.path, f"no charts: {skipped.message}", skipped.line)
         a_song = any(tag.name in _OF_A_SONG for tag in self.tags)
+        if not a_song and self.path.suffix.lower() not in CHART_SUFFIXES:
+            return ChartError(self.path, _NO_CHART_FILE)
         return (NoChartsError if a_song else ChartError)(self.path, "no charts: the file has no NOTES", 1)
 
     def text(self, tag: Tag, index: int = 0) -> str:
@@ -210,6 +212,7 @@ def suspicious_music(name: str) -> bool:
 
 
 _KINDS = f"{', '.join(CHART_SUFFIXES[:-1])} or {CHART_SUFFIXES[-1]}"
+_NO_CHART_FILE = f"not a chart file; give a {_KINDS} file, or a folder"
 _ALIASES = {"FREEZES": "STOPS", "NOTES2": "NOTES"}
 _SM_FIELDS = ("STEPSTYPE", "DESCRIPTION", "DIFFICULTY", "METER", "RADARVALUES")
 _NUL_TEXT = re.compile(rb"\A\s*(?:[^\0]\0){4}|\A\s*(?:\0[^\0]){4}")
@@ -240,7 +243,7 @@ def parse(data: bytes, path: Path) -> Song:
     """Read the bytes of a chart file; the suffix of `path` gives the format, and errors name the path."""
     path = Path(path)
     if wide := _wide_encoding(data):
-        raise ChartError(path, f"the text is {wide}, which no game reads: no charts; save it as UTF-8", 1)
+        raise ChartError(path, f"the text is {wide}, which no game reads; save it as UTF-8", 1)
     if (suffix := path.suffix.lower()) == UCS_SUFFIX:
         from dancetutor_cli.chart.ucs import read_ucs
 
@@ -248,6 +251,8 @@ def parse(data: bytes, path: Path) -> Song:
     tags = [Tag(_ALIASES.get(tag.name, tag.name), tag.start, tag.spans) for tag in msd.scan(data)]
     if not data.strip():
         raise ChartError(path, "no charts: the file is empty; save it again from the editor", 1)
+    if not tags and suffix not in CHART_SUFFIXES:
+        raise ChartError(path, _NO_CHART_FILE)
     if not tags:
         raise ChartError(path, "no charts: the file has no tags such as #TITLE; check that it is a chart file", 1)
     is_ssc = suffix == ".ssc" or (suffix == EDIT_SUFFIX and any(tag.name == "NOTEDATA" for tag in tags))
@@ -256,7 +261,7 @@ def parse(data: bytes, path: Path) -> Song:
     if not song.charts:
         raise reader.no_charts_error()
     if all(names.is_lights(chart.steps_type) for chart in song.charts):
-        raise ChartError(path, "no charts besides lights", song.charts[0].line)
+        raise ChartError(path, "the only charts are for lights; nobody dances them", song.charts[0].line)
     return song
 
 
@@ -325,7 +330,7 @@ class _Ssc(SongReader):
         if not timing_tags.is_own(own, source):
             return song
         if "BPMS" not in own:
-            message = f"{', '.join(sorted(own))} gives the chart timing of its own, without BPMS: it plays at 60 BPM"
+            message = f"{', '.join('#' + n for n in sorted(own))} gives the chart its own timing, but #BPMS is missing"
             warnings.append(ReadWarning("split-timing-without-bpms", message, line))
         timing = timing_tags.read(own, source, song.offset, warnings, line)
         return next((known for known in (song, self.timing_before) if known == timing), timing)  # to share caches
@@ -346,7 +351,7 @@ class _Ssc(SongReader):
         for tag in self.tags:
             if tag.name == "NOTEDATA":
                 if current is not None:
-                    message = "NOTEDATA without NOTES: its tags merge into the next chart"
+                    message = "#NOTEDATA without #NOTES: the games read its tags as part of the next chart"
                     self.warnings.append(ReadWarning("notedata-without-notes", message, self.lines(opened)))
                 current, opened = current if current is not None else [], tag.start
             elif tag.name == "NOTES":

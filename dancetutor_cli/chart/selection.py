@@ -212,7 +212,7 @@ def _difficulty(text: str) -> str:
 
 
 def _listed(charts: Iterable[Chart]) -> str:
-    return ", ".join(f"{chart.index} {chart.label}" for chart in charts)
+    return ", ".join(f"{chart.index}: {chart.label}" for chart in charts)
 
 
 # The songs below folders, for runs that make something of every chart: films and pages.

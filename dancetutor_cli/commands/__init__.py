@@ -120,8 +120,9 @@ def cli(context: click.Context) -> None:
 GROUPS = {
     "Charts": (
         "--difficulty", "--steps-type", "--index", "--section", "--meter", "--player", "--exclude", "--stdin-filename",
-        "--preset", "--play", "--dance", "--animation",
+        "--preset",
     ),
+    "Input": ("--play", "--dance", "--animation"),
     "Output": (
         "--output", "--output-file", "--format", "--frames", "--poses", "--poster", "--srt", "--music", "--background",
         "--into-file", "--name", "--report", "--plot", "--report-html", "--sheet", "--json", "--print", "--remove",

@@ -26,7 +26,7 @@ from dancetutor_cli.commands.shared_options import (
 )
 from dancetutor_cli.markers.styles import STRIPPED, STYLES
 from dancetutor_cli.reports.terminal import colour_diff
-from dancetutor_cli.run.errors import UsageError, choose_text
+from dancetutor_cli.run.errors import UsageError, choose_text, plural
 from dancetutor_cli.run.files import check_folder
 from dancetutor_cli.run.foreign_text import safe
 
@@ -72,8 +72,9 @@ class AnnotateOptions:
 @click.argument("paths", nargs=-1, required=True, type=GivenPath(holds_charts=True), metavar="PATH...")
 @click.option(
     "--markers", "styles", callback=_styles, metavar="KIND[,KIND]",
-    help=f"How to write the feet: {', '.join(STYLES)} (theme shows them during play).  [default: measure; with "
-    "--strip all, and background: the entry that render --into-file added]",
+    help=f"How to write the feet: {', '.join(STYLES)} (theme shows them during play). "
+    "With --strip also background: the entry that render --into-file added.  [default: measure; with "
+    "--strip: all]",
 )  # fmt: skip
 @click.option("--strip", is_flag=True, help="Remove the markers: all, or only those of --markers.")
 @click.option("--check", is_flag=True, help="Write nothing; exit status 1 if feet are missing or stale.")
@@ -84,7 +85,7 @@ class AnnotateOptions:
     "--output",
     type=GivenPath(),
     metavar="DIR",
-    help="Write the output here: a folder.  [default: into the files]",
+    help="Write the changed files into this folder.  [default: into the files]",
 )
 @click.option(
     "--into-file",
@@ -215,6 +216,7 @@ class _Talk:
     lacking: bool = False
     unselected: list[str] = field(default_factory=list)
     skipped: int = 0
+    folders: int = 0
 
     def begin(self) -> None:
         if "rows" in self.request.styles and not self.request.strip and not self.quiet:
@@ -226,7 +228,10 @@ class _Talk:
         for note in (*outcome.notes, *(() if self.check else outcome.problems)):
             self.warnings.add(outcome.source, note)
         if outcome.error is not None:
-            self.files["failed"] += 1
+            if outcome.source.is_dir():
+                self.folders += 1
+            else:
+                self.files["failed"] += 1
             report_error(outcome.error)
             return
         self.files["changed" if outcome.changed else "unchanged"] += 1
@@ -263,9 +268,11 @@ class _Talk:
             raise UsageError(safe(f"no chart matches {self.request.selection.options}{has}"))
         words = {} if self.request.write else {"changed": "would change"}
         parts = ", ".join(f"{n} {words.get(name, name)}" for name, n in sorted(self.files.items()) if n)
+        if self.folders:
+            parts += f"{'; ' * bool(parts)}no file to read in {plural(self.folders, 'folder')}"
         if not self.quiet:
-            click.echo(f"{total} file{'s' if total > 1 else ''}: {parts}", err=self.request.diff)
-        if self.files["failed"]:
+            click.echo(f"{plural(total, 'file')}: {parts}", err=self.request.diff)
+        if self.files["failed"] or self.folders:
             return 2
         return 1 if self.check and self.lacking else 0
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -119,6 +120,8 @@ def sources(paths: tuple[Path, ...], stdin_filename: Path | None, exclude: Seque
         if sys.stdin is None:
             raise UsageError("standard input (-) is closed; send a chart to it, or name a file")
         data = sys.stdin.buffer.read()
+        if stdin_filename is None and not data.strip():
+            raise UsageError("standard input: nothing was read; send a chart to it")
         name = f"stdin{_suffix_of(data)}"
         return [(stdin_filename or Path(name), data)]
     if stdin_filename is not None:
@@ -173,6 +176,12 @@ def report_error(error: Exception | str) -> None:
 LONG = 20 * 60.0  # seconds of film or motion; longer ones need a confirmation
 
 
+def _choices_text(word: str, choices: Sequence[str]) -> str:
+    """Return "choose auto, cpu or gl", or the one near choice, "did you mean cpu?"."""
+    *others, last = choices or ("",)
+    return did_you_mean(word, choices).strip(" ()") or f"choose {', '.join(others)} or {last}" if last else ""
+
+
 def usage_message(error: click.ClickException) -> str:
     """Return what click found wrong in one line: which option or argument, what to do, and where the help is."""
     context = getattr(error, "ctx", None)
@@ -183,6 +192,10 @@ def usage_message(error: click.ClickException) -> str:
         text = f"{name} needs a value" if "requires" in error.message else f"{name} takes no value"
     elif isinstance(error, click.BadParameter) and error.param is not None:
         hint = error.param.get_error_hint(context).replace("'", "").removesuffix("...")
+        if wrong := re.match(r"(?:\w+ )?'(.*)' (?:is not one of|does not exist)", error.message):
+            name = hint if isinstance(error.param, click.Option) else error.param.name
+            choices = error.param.type.choices if isinstance(error.param.type, click.Choice) else ()
+            return f"{name} {wrong[1]}: " + (_choices_text(wrong[1], choices) or "no such file or folder")
         text = f"{hint} is missing" if isinstance(error, click.MissingParameter) else f"{hint}: {error.message}"
     else:
         text = error.format_message()

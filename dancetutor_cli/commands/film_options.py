@@ -42,7 +42,7 @@ class _Size(click.ParamType):  # type: ignore[type-arg,unused-ignore]
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[int, int]:
         match = re.fullmatch(r"(\d{2,5})[x×](\d{2,5})", str(value).strip().lower())
         if not match:
-            self.fail(f"'{value}' is not a size; write it as 1280x720", param, ctx)
+            raise UsageError(f"--size {value}: write width x height, such as 1280x720")
         width, height = int(match[1]), int(match[2])
         if not (LEAST_SIDE <= width <= MOST_SIDE and LEAST_SIDE <= height <= MOST_SIDE):
             self.fail(f"{width}x{height} is not possible; {LEAST_SIDE} to {MOST_SIDE} pixels each way", param, ctx)

@@ -128,7 +128,8 @@ class Performance:
         disturbances += [("--trip", one.second) for one in options.stumbles]
         for name, second in disturbances:
             if not wanted.start <= second <= wanted.end:
-                raise UsageError(f"{name} {second:g}: the motion lasts from {wanted.start:.3f} s to {wanted.end:.3f} s")
+                limits = f"{wanted.start:.3f} s to {wanted.end:.3f} s"
+                raise UsageError(f"{name} {second:g}: give a time within the motion, {limits}")
         return RagdollStyle(self.blend, options)
 
 

@@ -203,7 +203,7 @@ def read_play(path: Path, chart: Chart, rows: Rows, pad: Pad) -> Play:
 
 
 def _chart_data(path: Path, chart: Chart) -> list[Any]:
-    data = read_json(path)
+    data = read_json(path, writer="analyze --format json")
     try:
         if data["schema"] != SCHEMA:
             raise FileError(path, f"written in schema {data['schema']}; this program reads {SCHEMA}")

@@ -223,9 +223,7 @@ def _hierarchy(path: Path, lines: list[str]) -> tuple[list[_Joint], int]:
             elif head == "CHANNELS":
                 joints[open_[-1] or 0].channels = _channels(words)
             elif head != "HIERARCHY":
-                raise FileError(
-                    path, f"not a BVH file: expected HIERARCHY or its words, found {words[0][:40]!r}", number + 1
-                )
+                raise FileError(path, f"not a BVH file: {words[0][:40]!r} is no word of a HIERARCHY", number + 1)
         except (ValueError, IndexError, KeyError) as error:
             raise FileError(path, f"{line.strip()[:60]!r} cannot be read", number + 1) from error
     raise FileError(path, "has no MOTION section; it is not a BVH file, or it is cut off")

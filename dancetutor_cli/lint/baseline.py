@@ -96,7 +96,7 @@ def _entry(key: Key, count: int) -> dict[str, Any]:
 def load_baseline(path: Path) -> Baseline:
     """Read a baseline; FileError says which entry or key is wrong."""
     try:
-        data = read_json(path)
+        data = read_json(path, writer="--update-baseline")
     except MissingFileError:
         raise FileError(path, "there is no such baseline; add --update-baseline to make it") from None
     if not isinstance(data, Mapping) or data.get("schema") != SCHEMA or not isinstance(data.get("entries"), list):

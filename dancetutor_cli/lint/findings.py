@@ -53,8 +53,8 @@ class Finding:
 
     @property
     def sentence(self) -> str:
-        """For people: the message after the rule's name in plain words, "unsure feet: the solver is only 63 % sure"."""
-        return f"{self.name.replace('-', ' ')}: {self.message}"
+        """For people: the message after the rule's name, "unsure-feet: the solver is only 63 % sure"."""
+        return f"{self.name}: {self.message}"
 
     def with_excerpt(self, rows: tuple[ExcerptRow, ...]) -> Finding:
         """Return the finding with this excerpt; many times quicker than `dataclasses.replace`."""

@@ -105,4 +105,5 @@ def _value(code: str, name: str, value: Any) -> str:
 
 def _with_unit(code: str, name: str, value: str) -> str:
     unit = _UNITS.get(f"{code} {name}", _UNITS.get(name, ""))
+    unit = unit.removesuffix("s") if value == "1" and unit != "s" else unit
     return f"{value} {unit}".rstrip()

@@ -102,22 +102,23 @@ def is_outside(path: Path, folder: Path) -> bool:
         return True
 
 
-def read_json(path: Path, limit: int = JSON_LIMIT) -> Any:
+def read_json(path: Path, limit: int = JSON_LIMIT, writer: str = "") -> Any:
     """Read a JSON file. Raises FileError as `read_bytes` and `parse_json`."""
-    return parse_json(read_bytes(path, limit), path)
+    return parse_json(read_bytes(path, limit), path, writer)
 
 
-def parse_json(data: bytes, path: Path) -> Any:
+def parse_json(data: bytes, path: Path, writer: str = "") -> Any:
     """Parse JSON in UTF-8, with or without a BOM: at most `MAX_DEPTH` levels, only finite numbers, unique names.
 
-    path : for errors. Raises FileError with the place, never with the content.
+    path, writer : for errors: the file, and the option that writes such files. Raises FileError with the place, never with the content.
     """
     try:
         value = json.loads(
             data.decode("utf-8-sig"), object_pairs_hook=_once, parse_float=_finite, parse_constant=_finite
         )
     except json.JSONDecodeError as error:
-        raise FileError(path, f"is not JSON ({error.msg.lower()})", error.lineno, error.colno) from None
+        advice = f"; give a file that {writer} wrote" if writer else ""
+        raise FileError(path, f"is not JSON{advice}", error.lineno, error.colno) from None
     except UnicodeDecodeError:
         raise FileError(path, "is not JSON: the text is not UTF-8") from None
     except RecursionError:

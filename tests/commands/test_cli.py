@@ -48,7 +48,7 @@ def test_a_section_that_is_none_is_reported_before_the_file_is_looked_at(tmp_pat
         (["analyze"], "PATH is missing; see dancetutor analyze --help"),
         (["analyze", ".", "--preset"], "--preset needs a value"),
         (["analyze", ".", "--no-cache=3"], "--no-cache takes no value"),
-        (["render", ".", "--size", "12"], "--size: '12' is not a size; write it as 1280x720"),
+        (["render", ".", "--size", "12"], "--size 12: write width x height, such as 1280x720"),
         (["animate", "a", "b", "-o", "c"], "got unexpected extra argument (b); see dancetutor animate --help"),
     ],
 )

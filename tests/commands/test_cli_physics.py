@@ -51,5 +51,5 @@ def test_a_push_is_reported_and_a_wrong_one_refused_before_the_work(tmp_path: Pa
     assert "warning: pushed at 9.000 s with 300 N: the hips move by " in result.stderr
     assert "foot is caught" in result.stderr and out.exists()
     assert "there is no direction 'up'" in said(*PART, "-o", tmp_path / "b.npz", "--push", "9:300:up")
-    assert "the motion lasts from 8.000 s" in said(*PART, "-o", tmp_path / "b.npz", "--push", "99:300:left")
+    assert "give a time within the motion, 8.000 s" in said(*PART, "-o", tmp_path / "b.npz", "--push", "99:300:left")
     assert not (tmp_path / "b.npz").exists()

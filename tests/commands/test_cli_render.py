@@ -65,7 +65,7 @@ def test_hostile_files_are_one_line_and_no_film(
         (("-o", "nowhere/film.mp4"), "folder"),
         (("--font", "nofont.ttf", "--section", "4:5"), "nofont.ttf"),
         (("--push", "9:300:up"), "ahead, left, back, right"),
-        (("--push", "99:300:left", "--section", "8:9"), "the motion lasts from 8.000 s to 11.200 s"),
+        (("--push", "99:300:left", "--section", "8:9"), "give a time within the motion, 8.000 s to 11.200 s"),
     ],
 )
 def test_what_does_not_exist_is_refused_with_what_does(

@@ -117,7 +117,7 @@ def test_a_push_that_is_none_is_reported_in_one_line(text: str, said: str) -> No
 
 def test_pushes_outside_of_the_motion_are_refused(plain: Motion) -> None:
     assert parse_push("12.5:300:Back") == Push(12.5, 300.0, 180.0) and parse_push("1:2:-45").degrees == -45
-    with pytest.raises(UsageError, match=r"--push 9: the motion lasts from 0\.600 s to 3\.600 s"):
+    with pytest.raises(UsageError, match=r"--push 9: give a time within the motion, 0\.600 s to 3\.600 s"):
         through_ragdoll(plain, NEUTRAL, RagdollOptions(pushes=(Push(9.0, 300.0, 0.0),)))
     with pytest.raises(UsageError, match=r"--trip 3\.59: no foot is in the air after that"):
         through_ragdoll(plain, NEUTRAL, RagdollOptions(stumbles=(Stumble(3.59),)))

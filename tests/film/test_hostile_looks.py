@@ -80,7 +80,7 @@ def test_damaged_fonts_are_refused_or_lack_letters(tmp_path: Path) -> None:
     [
         (["--sync-offset", "nan"], "--sync-offset nan: write a number from -60000 to 60000"),
         (["--sync-offset", "inf"], "--sync-offset inf: write a number from -60000 to 60000"),
-        (["--font", "{tmp}/damaged.ttf"], "cannot be used as a font"),
+        (["--font", "{tmp}/damaged.ttf"], "is not a font file that can be read"),
         (["--font", "{tmp}/pipe.ttf"], "named pipe"),
         (["--layout", "{tmp}/zero.yaml"], "size"),
     ],

@@ -139,7 +139,7 @@ GOOD = HEAD + "0 90 0 0 0 0 0 0 0\n0 90 0 0 0 0 90 0 0\n"
     ("text", "says"),
     [
         ("", "no MOTION"),
-        ("hello\n", "not a BVH file: expected HIERARCHY"),
+        ("hello\n", "not a BVH file: 'hello' is no word of a HIERARCHY"),
         (GOOD.replace("CHANNELS 3", "CHANNELS 4"), "CHANNELS 4"),
         (GOOD.replace("Zrotation Xrotation Yrotation\n    End", "Zrotation Wrotation Yrotation\n    End"), "Wrotation"),
         (GOOD.replace("OFFSET 0 -80 0\n    C", "OFFSET 0 nan 0\n    C"), "nan"),

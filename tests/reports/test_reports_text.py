@@ -59,7 +59,7 @@ def test_a_finding_is_one_line_in_lint_form() -> None:
 def test_a_finding_about_the_file_has_no_chart() -> None:
     about_file = Finding("DT104", "odd-tag", "warning", "strange offset", 3, 1)
     out, _ = printed(replace(FILE, findings=(about_file,), charts=()))
-    assert "charts/x.ssc:3:1 DT104 odd tag: strange offset" in out.splitlines()
+    assert "charts/x.ssc:3:1 DT104 odd-tag: strange offset" in out.splitlines()
 
 
 def test_numbers_of_the_table_stand_under_their_names() -> None:

@@ -343,7 +343,7 @@ def disturbed(motion: Motion, pushes: Sequence[Push], stumbles: Sequence[Stumble
     asked = [("--push", push.second) for push in pushes] + [("--trip", stumble.second) for stumble in stumbles]
     for name, second in asked:
         if not start <= second <= end:
-            raise UsageError(f"{name} {second:g}: the motion lasts from {start:.3f} s to {end:.3f} s")
+            raise UsageError(f"{name} {second:g}: give a time within the motion, {start:.3f} s to {end:.3f} s")
     impulses = [(push.second, force_of(push, motion)) for push in pushes]
     for stumble in stumbles:
         motion = replace(motion, rotations=motion.rotations.copy())

@@ -83,7 +83,7 @@ def font(path: str | None, size: float) -> ImageFont.FreeTypeFont:
         found = ImageFont.truetype(io.BytesIO(data), size)
         found.getmask("Ag 1")  # detects damaged letters
     except (OSError, ValueError, MemoryError) as error:
-        raise FileError(path, f"cannot be used as a font: {error}") from error
+        raise FileError(path, "is not a font file that can be read; give a .ttf or .otf file") from error
     return found
 
 

@@ -163,7 +163,7 @@ class Holdswitch(MoveRule):
 
 
 class JumpFootswitch(MoveRule):
-    """A quick jump footswitch: in a jump the other foot takes over a panel, and this foot goes to the other one.
+    """A quick jump footswitch: in a jump one foot takes over the panel of the other, which goes to the second panel.
 
     `max_seconds`: only jumps at most this long after the step before count; with more time nobody notices.
     by-meter: it is reported if at most `share` per cent of the charts of this meter have one that is as quick.
