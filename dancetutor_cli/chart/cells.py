@@ -98,7 +98,7 @@ class Cells:
 
     @property
     def lane(self) -> NDArray[np.int16]:
-        """An ascending number of each cell's part and column."""
+        """A number for each cell that rises with the part and, within a part, with the column."""
         return (self.part * _MOST_COLUMNS + self.column).astype(np.int16)
 
 

@@ -141,7 +141,7 @@ def _note_spans(text: NoteText, value: Value) -> list[NoteSpan]:
     if routine:
         cuts = [start - 1, *(start + at.start() for at in re.finditer(b"&", text.value[start:end])), end]
         spans = [(a + 1, b) for a, b in itertools.pairwise(cuts)]
-        _tell_players([text.value[a:b] for a, b in spans], text.lines(start), warnings)
+        _warn_of_players([text.value[a:b] for a, b in spans], text.lines(start), warnings)
     parts = [NoteSpan(a, b, begin, columns) for a, b in spans[:_PLAYERS]]
     parts[0].warnings += warnings
     if len(parts) == 1 and letters_of(text.value[start:end], columns):
@@ -149,7 +149,7 @@ def _note_spans(text: NoteText, value: Value) -> list[NoteSpan]:
     return parts
 
 
-def _tell_players(parts: list[bytes], line: int, warnings: list[ReadWarning]) -> None:
+def _warn_of_players(parts: list[bytes], line: int, warnings: list[ReadWarning]) -> None:
     """Add a warning that a routine chart is for two players, or that only the notes of the first two are read."""
     written = 1 + max((n for n, part in enumerate(parts) if part.strip(BLANKS + b",0")), default=0)
     text = several_players_message(2, "'&' separates their notes")

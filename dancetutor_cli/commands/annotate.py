@@ -134,8 +134,8 @@ def command(paths: tuple[Path, ...], selection: Selection, options: AnnotateOpti
     files = find_files(paths, options.exclude)
     files = files if options.output is not None else within_folders(paths, files)
     songs = _songs(_items(paths, options.output, files))
-    talk = _Talk(request, options.check, options.quiet, JoinedWarnings(every=options.verbose))
-    talk.begin()
+    messages = _Messages(request, options.check, options.quiet, JoinedWarnings(every=options.verbose))
+    messages.begin()
     if not request.strip:
         announce_compiling(
             choice_of(request.preset),
@@ -144,10 +144,10 @@ def command(paths: tuple[Path, ...], selection: Selection, options: AnnotateOpti
         )
     try:
         for outcome in _outcomes(songs, request, options.jobs):
-            talk.tell(outcome)
+            messages.show(outcome)
     finally:
-        talk.warn()
-    return talk.end()
+        messages.warn()
+    return messages.end()
 
 
 def _items(paths: Sequence[Path], output: Path | None, files: Sequence[Path]) -> list[Item]:
@@ -205,7 +205,7 @@ def _fitting_jobs(songs: int) -> int:
 
 
 @dataclass
-class _Talk:
+class _Messages:
     """The messages and the exit status of a run."""
 
     request: AnnotateRequest
@@ -224,7 +224,7 @@ class _Talk:
 
             warn([WARNING])
 
-    def tell(self, outcome: AnnotateOutcome) -> None:
+    def show(self, outcome: AnnotateOutcome) -> None:
         for note in (*outcome.notes, *(() if self.check else outcome.problems)):
             self.warnings.add(outcome.source, note)
         if outcome.error is not None:

@@ -176,10 +176,9 @@ def report_error(error: Exception | str) -> None:
 LONG = 20 * 60.0  # seconds of film or motion; longer ones need a confirmation
 
 
-def _choices_text(word: str, choices: Sequence[str]) -> str:
-    """Return "choose auto, cpu or gl", or the one near choice, "did you mean cpu?"."""
-    *others, last = choices or ("",)
-    return did_you_mean(word, choices).strip(" ()") or f"choose {', '.join(others)} or {last}" if last else ""
+def _choices_text(choices: Sequence[str]) -> str:
+    """Return "choose auto, cpu or gl", "" if there is no choice."""
+    return f"choose {', '.join(choices[:-1])} or {choices[-1]}" if choices else ""
 
 
 def usage_message(error: click.ClickException) -> str:
@@ -195,7 +194,7 @@ def usage_message(error: click.ClickException) -> str:
         if wrong := re.match(r"(?:\w+ )?'(.*)' (?:is not one of|does not exist)", error.message):
             name = hint if isinstance(error.param, click.Option) else error.param.name
             choices = error.param.type.choices if isinstance(error.param.type, click.Choice) else ()
-            return f"{name} {wrong[1]}: " + (_choices_text(wrong[1], choices) or "no such file or folder")
+            return f"{name} {wrong[1]}: " + (_choices_text(choices) or "no such file or folder")
         text = f"{hint} is missing" if isinstance(error, click.MissingParameter) else f"{hint}: {error.message}"
     else:
         text = error.format_message()

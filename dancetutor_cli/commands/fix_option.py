@@ -56,17 +56,17 @@ def fix_all(run: LintRun, tasks: Sequence[AnalyzeTask], options: AnalyzeOptions)
     """Correct every file, and print the results. Returns the exit status: 1 if a requested finding remains."""
     wanted = [_parse_fix_request(text) for text in options.fix]
     _check(tasks, options)
-    talk = _Talk(diff=options.diff)
+    messages = _Messages(diff=options.diff)
     files = within_folders(options.paths, [task.path for task in tasks])
     tasks = [task for task in tasks if task.path in files]
     meant = {task.path.absolute() for task in tasks}
     for task in tasks:
         outcome = _fix(run, task, wanted, options)
-        talk.tell(task.path, outcome)
+        messages.show(task.path, outcome)
         other = twin(task.path)
         if outcome.fixed and other is not None and other.absolute() not in meant:
             warn([f"{other}: the same song in another file, which was not named and is unchanged; correct it as well"])
-    return talk.end()
+    return messages.end()
 
 
 def _check(tasks: Sequence[AnalyzeTask], options: AnalyzeOptions) -> None:
@@ -106,7 +106,7 @@ def _of_file(result: FileResult, asked_for: FixRequest) -> tuple[tuple[Finding, 
 
 
 @dataclass
-class _Talk:
+class _Messages:
     """The messages and the exit status of a run. diff : whether changes are only shown, and not written"""
 
     diff: bool
@@ -116,7 +116,7 @@ class _Talk:
     unfixed: int = 0
     failed: int = 0
 
-    def tell(self, path: Path, outcome: FixOutcome) -> None:
+    def show(self, path: Path, outcome: FixOutcome) -> None:
         self.files += 1
         if outcome.error is not None:
             self.failed += 1

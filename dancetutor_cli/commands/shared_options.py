@@ -189,14 +189,15 @@ ragdoll_options = combined(
         "--push",
         multiple=True,
         metavar="TIME:FORCE:DIRECTION",
-        help="Push the dancer: second of the song or capture, newtons, and ahead, left, back, right or degrees to the left.",
+        help="Push the dancer: second of the song or capture, newtons, and ahead, left, back, right or degrees to "
+        "the left.",
     ),
     click.option(
         "--trip",
         type=Second(),
         multiple=True,
         metavar="TIME",
-        help="Make the dancer stumble: something catches the foot that is in the air at this second of the song or capture.",
+        help="Make the dancer stumble: something catches the foot in the air at this second of the song or capture.",
     ),
 )
 

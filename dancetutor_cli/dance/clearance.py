@@ -183,7 +183,10 @@ def wrung(way: Way, line: Array, step: StepSettings) -> Array:
 
 
 def enough(gaps: Array, e: Array, apart: float) -> Array:
-    """Return the required room (k,) of a way: at most that at its ends. e : how far the swing has come"""
+    """Return the least allowed gap (k,) along a swing, metres: `apart`, or less if the gaps at its ends are smaller.
+
+    gaps : (k,) metres; e : (k,) share of the swing that is done, 0 to 1
+    """
     return np.asarray(np.minimum(apart, gaps[0] + e * (gaps[-1] - gaps[0])))
 
 

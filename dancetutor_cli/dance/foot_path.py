@@ -150,7 +150,7 @@ def foot_path(track: FootTrack, times: Array, settings: MotionSettings) -> FootP
 
 
 def shoe_path(track: FootTrack, times: Array, settings: MotionSettings) -> tuple[Array, Array]:
-    """Ball (f, 2) over the ground and yaw (f,) of a foot at `times` (f,), as of `foot_path`, which is costlier."""
+    """Return a foot's ball (f, 2) on the ground plane and yaw (f,), radians, as `foot_path` does but in less time."""
     moves = track.moves
     if not moves or any(isinstance(move, Shake) or min(move.pitches) < 0.0 for move in moves):
         path = foot_path(track, times, settings)
@@ -176,7 +176,7 @@ class _OverGround(NamedTuple):
 
 
 def _over_ground(track: FootTrack, times: Array, settings: MotionSettings) -> _OverGround:
-    """Of a foot that has moves."""
+    """Return where a foot with at least one move is over the ground at f times."""
     moves, step = track.moves, settings.step
     lift = np.array([m.lift for m in moves])
     land = np.array([m.land for m in moves])
@@ -265,7 +265,7 @@ def _height(track: FootTrack, i: NDArray[np.int64], s: Array, step: Array) -> Ar
     """Height of the sole; step : as of `risen`."""
     height = np.array([m.height if isinstance(m, Swing) else 0.0 for m in track.moves])[i]
     tuck = np.array([m.tuck if isinstance(m, Jump) else 0.0 for m in track.moves])[i]
-    # pulled up at once, for a leg that trails behind is stretched as the body leaves the ground
+    # pulled up at once, because a leg that trails behind is stretched as the body leaves the ground
     pulled = np.where(s < 0.5, np.sin(np.pi * s), np.sin(np.pi * s) ** 2)
     jump = height * 4.0 * s * (1.0 - s) + tuck * pulled
     shape = np.where(_are(track, Hover, Gallop, Shake)[i], hovering(s), step)

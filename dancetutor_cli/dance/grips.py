@@ -36,7 +36,7 @@ ALONG = np.linspace(0.15, 1.0, 5)  # points of the forearm and the hand that are
 ARMS_BACK = 0.022  # metres that the centre of mass lies farther back when the hands are on the rail
 # a hand on its way that is farther than this from straight outward would go through the trunk
 MOST_INWARD = np.radians(145.0)
-# the same for a hand that crosses over before the dancer: last part of its way, and the angles of the rail
+# the same for a hand that crosses over in front of the dancer: last part of its way, and the angles of the rail
 ACROSS = ((0.5, np.radians(60.0), np.radians(172.0)), (1.0, np.radians(60.0), np.radians(330.0)))
 HAND = 0.10  # metres that a hand reaches beyond its wrist
 
@@ -87,7 +87,7 @@ def _part(plan: Plan, at: Array, context: Context) -> BarTrunk:
 class Arm:
     """One arm, and where on the rail its hand can be at which of the n times.
 
-    apart : (n,) metres beside the pelvis, outward, of the hand's preferred place; None: the arm crosses over before her
+    apart : (n,) metres beside the pelvis, outward, of the hand's preferred place; None if it crosses over in front
     """
 
     def __init__(self, side: int, trunk: BarTrunk, busy: Flags, context: Context, apart: Array | None = None) -> None:

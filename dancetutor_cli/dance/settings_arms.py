@@ -165,7 +165,7 @@ class BarSettings:
 
 @dataclass(frozen=True, slots=True)
 class AcrossSettings:
-    """Turns in which the far hand crosses over before her to the bar."""
+    """Turns in which the far hand crosses over to the bar in front of the dancer."""
 
     turned: Degrees
     past: Degrees

@@ -68,7 +68,7 @@ def waiting_at(plan: Plan, times: Array, context: Context) -> WaitMotion:
     song = song_of(plan, context)
     slow = [slowly(song, times, numbers.turn_time, salt) for salt in range(3)]
     out.turn[:] = plan.hand * out.share * np.radians(numbers.turn) * slow[0]
-    for hand in (0, 1):  # now and then one hand is held before the body for a while
+    for hand in (0, 1):  # now and then one hand is held in front of the body for a while
         up = out.share * smooth((slow[1 + (hand ^ plan.lead)] - numbers.held_from) / (1.0 - numbers.held_from))
         out.hands[:, hand] += up[:, None] * [0.0, numbers.held_up, numbers.held_ahead]
     for number in range(int(np.floor(first / numbers.every)) - 1, int(np.floor(last / numbers.every)) + 1):

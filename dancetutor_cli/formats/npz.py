@@ -23,7 +23,7 @@ Schema 1, all metres, seconds and local unit quaternions (w, x, y, z); f frames,
 | bar | (3,) | with a bar: height, z behind the pad, radius of the rail |
 | bar_spans | (k, 2) | x from and to of its pieces |
 | grip_start, grip_end, grip_side, grip_x | (g,) | seconds; 0 left hand, 1 right; where its palm is on the rail |
-| grip_across | (g,) | 1 where it has crossed over before the body |
+| grip_across | (g,) | 1 where it has crossed over in front of the body |
 
 A reader must survive added arrays. `FIELDS` is the table by which a file is read.
 """

@@ -42,7 +42,7 @@ _WORDS = {
 
 
 def write(song: Song, feet: ChartFeet, force: bool) -> NoteChange:
-    """Update the markers of a chart. Missing markers are reported in one line for each state, with the first place."""
+    """Update the markers of a chart. One line for each kind of missing or stale marker gives the first measure."""
     chart = feet.chart
     splices, states = _updates(song.data, feet, force)
     change = NoteChange(splices, Counter(one.state.value for one in states))

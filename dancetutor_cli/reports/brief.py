@@ -21,7 +21,7 @@ _SONG = 2  # limit of the files of one song: its .sm and its .ssc
 _MOST_UNREADABLE = 8
 _PAGE = 60  # limit of lines for a pack
 _LEAST = 28  # least characters of a path that are shown
-_ALIKE = 3  # number of lines of one rule from which they become one line
+_ALIKE = 3  # from this many charts on, the findings of a rule share one line
 
 
 @dataclass(frozen=True, slots=True)

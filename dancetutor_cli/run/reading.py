@@ -110,7 +110,8 @@ def read_json(path: Path, limit: int = JSON_LIMIT, writer: str = "") -> Any:
 def parse_json(data: bytes, path: Path, writer: str = "") -> Any:
     """Parse JSON in UTF-8, with or without a BOM: at most `MAX_DEPTH` levels, only finite numbers, unique names.
 
-    path, writer : for errors: the file, and the option that writes such files. Raises FileError with the place, never with the content.
+    path, writer : for errors: the file, and what writes such files. Raises FileError with the place, never with
+    the content.
     """
     try:
         value = json.loads(

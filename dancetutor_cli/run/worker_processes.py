@@ -196,7 +196,7 @@ class ProcessWorkers:
         try:
             message = pickle.loads(worker.connection.recv_bytes())
         except (EOFError, OSError):
-            return self._bury(worker)
+            return self._replace_dead(worker)
         if isinstance(message, FinishedWork):
             worker.task = None
             return message
@@ -204,7 +204,7 @@ class ProcessWorkers:
             self.report(worker.task.key, message)
         return None
 
-    def _bury(self, worker: _Worker) -> FinishedWork | None:
+    def _replace_dead(self, worker: _Worker) -> FinishedWork | None:
         """Replace a dead worker. Its task is retried once; the second time, it fails."""
         worker.process.join(5)
         self._workers.remove(worker)

@@ -14,7 +14,7 @@ from annotating import Said as Annotated
 from click.testing import CliRunner
 
 from dancetutor_cli.commands.analyze import command
-from dancetutor_cli.commands.fix_option import _Talk
+from dancetutor_cli.commands.fix_option import _Messages
 from dancetutor_cli.lint.analysis import analyze_file
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.fix import ALREADY_REMOVED, NO_MOVE, FixOutcome, SkippedFinding
@@ -105,9 +105,9 @@ def test_what_went_with_another_edit_is_gone_and_no_failure(capsys: pytest.Captu
         SkippedFinding("dance-single Hard 9", finding, NO_MOVE),
     )
     for left, status in ((gone, 0), (kept, 1)):
-        talk = _Talk(diff=False)
-        talk.tell(Path("x.sm"), FixOutcome(unfixed=(left,)))
-        assert talk.end() == status
+        messages = _Messages(diff=False)
+        messages.show(Path("x.sm"), FixOutcome(unfixed=(left,)))
+        assert messages.end() == status
         said = capsys.readouterr().out
         assert ("left alone" in said) == (status == 1) and ("] gone: an earlier edit" in said or status == 1)
 

@@ -66,7 +66,7 @@ class Row:
 
     @property
     def haste(self) -> float:
-        """How much faster than a fast move the move is, 0 to 1."""
+        """How quick the move is: 0 at `step.fast` seconds or more, 1 at `step.hasty` seconds or less."""
         step = self.context.settings.step
         return float(np.clip((step.fast - self.duration) / (step.fast - step.hasty), 0.0, 1.0))
 

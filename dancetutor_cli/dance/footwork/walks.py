@@ -65,7 +65,7 @@ def walk_on(plan: Plan, mines: Array, gait: str, context: Context) -> WalkPropos
 
 
 def walk_off(plan: Plan, mines: Array, gait: str, context: Context) -> WalkProposal | None:
-    """Propose a walk after the last note to the other side, or back if her feet would be in each other's way.
+    """Propose a walk after the last note to the other side, or back if the dancer's feet would be in each other's way.
 
     Beside another dancer, the dancer goes to her own side, or stays.
     """
@@ -107,7 +107,7 @@ def side_of(plan: Plan, context: Context) -> int:
 
 
 def _place_off_pad(ground: Ground, side: int, far: float) -> float:
-    """Return a place along x, `far` metres beside the pad, on the left (0) or right (1) of who faces the screen."""
+    """Return a place along x, `far` metres beside the pad, left (0) or right (1) of a dancer who faces the screen."""
     return ground.high[0] + far if side == 0 else ground.low[0] - far
 
 

@@ -192,7 +192,7 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
 
 
 def _upward(x: Array) -> Array:
-    """Return what of x is above 0, softly over some `UP_SOFT` metres, and 0 at 0."""
+    """Return max(x, 0), rounded off over about `UP_SOFT` metres around 0, and 0 at 0."""
     return np.asarray((x + np.sqrt(x**2 + UP_SOFT**2) - UP_SOFT) / 2.0)
 
 
@@ -228,7 +228,7 @@ def _speed_limit_offset(path: Array, rate: float, arms: ArmSettings) -> tuple[Ar
 
 
 def lately(tempo: Array, rate: float, around: float) -> Array:
-    """Return the mean (n,) of the tempo over so many seconds around: the effort, with which hands rise slowly."""
+    """Return the mean (n,) of the tempo from `around` seconds before to `around` seconds after: the effort."""
     width = max(1, round(around * rate))
     summed = np.cumsum(np.concatenate((np.repeat(tempo[:1], width), tempo, np.repeat(tempo[-1:], width))))
     return np.asarray((summed[2 * width :] - summed[: -2 * width]) / (2 * width))
@@ -255,7 +255,7 @@ def _behind_the_chest(hands: tuple[Array, Array], yaw: Array, rate: float, arms:
 
 
 def _wandering(times: Array, arms: ArmSettings) -> Array:
-    """Return slow movements (n, 2, 3) of both hands, about 1 far: nobody's arms mirror each other."""
+    """Return slow waves (n, 2, 3) for both hands, about 1 in amplitude; people do not move both arms alike."""
     hands = np.arange(6).reshape(2, 3)
     waves = ((arms.wander_slow, arms.wander_behind), (arms.wander_quick, arms.wander_quick_behind))
     slow, fast = (np.sin(2 * np.pi * (times[:, None, None] / every + share * hands)) for every, share in waves)

@@ -83,12 +83,12 @@ class Follower:
 class Numbers:
     """The numbers for the whole body.
 
-    gravity : m/s^2 downward; friction : of the feet on the floor; stiffness : N m s/rad, damper of every joint
+    gravity : m/s² downward; friction : of the feet on the floor; stiffness : N m s/rad, damper of every joint
     spring : N m/rad that turns every joint back to the rest pose
     update_rate : steps of the engine per second; sample_rate : frames per second that the input is sampled at
     """
 
-    gravity: Annotated[float, Bounds(-50, 50, "m/s^2")]
+    gravity: Annotated[float, Bounds(-50, 50, "m/s²")]
     friction: Annotated[float, Bounds(0, 10)]
     stiffness: Annotated[float, Bounds(0, 100, "N m s/rad")]
     spring: Annotated[float, Bounds(0, 1000, "N m/rad")]
