@@ -198,7 +198,7 @@ def as_json(table: dict[str, Any]) -> bytes:
 def as_lua(table: dict[str, Any]) -> bytes:
     """Return the Lua file: a chunk that returns the same table and calls no function."""
     body = "\n".join(_lua_lines(table, 0))
-    return _HEAD + b"; docs/theme.md tells what stands in it\nreturn " + encode_json(body) + b"\n"
+    return _HEAD + b"; docs/theme.md explains the fields\nreturn " + encode_json(body) + b"\n"
 
 
 def _lua_lines(value: Any, depth: int) -> Iterator[str]:

@@ -58,7 +58,7 @@ def explain_all() -> str:
 # The docstring of a rule, prepared for readers. Tests of the rule read its options, as in "Bad (max_seconds = 0.6):",
 # and the letters beside its rows.
 
-_HEAD = re.compile(r"^(Bad|Better) \((\w+ = .*?)\):", re.MULTILINE)
+_HEAD = re.compile(r"^(Bad|Better) \((\w+ = .*?)\):(.*)", re.MULTILINE)
 _OPTION = re.compile(r"(\w+) = (\[.*?\]|[^,]*)")
 _BOTH = re.compile(r"^(Bad\b.*?)[ \n](Better: )", re.MULTILINE)
 _TAG = re.compile(r"(?<!`)#[A-Z]+:(?:[^;`\n]*;|\S+)")
@@ -86,11 +86,11 @@ def _head(code: str, match: re.Match[str], heads: list[str]) -> str:
     If both patterns have the same options, the better one does not repeat them.
     """
     if match[1] == "Better" and heads[0] == match[2]:
-        return "Better:"
+        return f"Better:{match[3]}"
     *said, last = (f"{name} is set to {_with_unit(code, name, value)}" for name, value in _OPTION.findall(match[2]))
     said = [", ".join(said), last] if said else [last]
     spacing = _SPACING if "seconds" in match[2] else ""
-    return textwrap.fill(f"{match[1]}, if {' and '.join(said)}{spacing}:", _WIDTH)
+    return textwrap.fill(f"{match[1]}, if {' and '.join(said)}{spacing}:{match[3]}", _WIDTH)
 
 
 def _value(code: str, name: str, value: Any) -> str:

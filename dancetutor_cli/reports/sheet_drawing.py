@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -19,6 +20,7 @@ from dancetutor_cli.run.foreign_text import safe
 from dancetutor_cli.run.languages import ENGLISH, Language, load_language
 from dancetutor_cli.run.markup import number, tag, text, title
 
+_PLURAL = re.compile(r"\{(\w+)\|([^|}]*)\|([^}]*)\}")
 HOLD_OPACITY = 0.55
 _BAND_OPACITY = 0.2
 _FEET_SPACING = 27.0  # pixels; diagrams of feet that are nearer would overlap
@@ -44,8 +46,9 @@ class Sheet:
         return load_language(self.language)
 
     def say(self, label: str, **values: object) -> str:
-        """Return the words of a label with their {places} filled in."""
-        return self.words.sheet[label].format_map(values)
+        """Return the words of a label with their {places} filled in, "row" or "rows" for {count|row|rows} by count."""
+        words = _PLURAL.sub(lambda m: m[2] if values[m[1]] == 1 else m[3], self.words.sheet[label])
+        return words.format_map(values)
 
     def message(self, finding: Finding) -> str:
         """Return the sentence of a finding in English, or the meaning of its rule in another language."""
