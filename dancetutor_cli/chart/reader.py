@@ -243,7 +243,7 @@ def parse(data: bytes, path: Path) -> Song:
     """Read the bytes of a chart file; the suffix of `path` gives the format, and errors name the path."""
     path = Path(path)
     if wide := _wide_encoding(data):
-        raise ChartError(path, f"the text is {wide}, which no game reads; save it as UTF-8", 1)
+        raise ChartError(path, f"no charts: the text is {wide}, which no game reads; save it as UTF-8", 1)
     if (suffix := path.suffix.lower()) == UCS_SUFFIX:
         from dancetutor_cli.chart.ucs import read_ucs
 
@@ -261,7 +261,7 @@ def parse(data: bytes, path: Path) -> Song:
     if not song.charts:
         raise reader.no_charts_error()
     if all(names.is_lights(chart.steps_type) for chart in song.charts):
-        raise ChartError(path, "the only charts are for lights; nobody dances them", song.charts[0].line)
+        raise ChartError(path, "no charts to dance: all of them are for lights", song.charts[0].line)
     return song
 
 

@@ -83,7 +83,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
     "--output-file",
     type=GivenPath(dir_okay=False),
     metavar="FILE",
-    help="Write the output into this file.  [default: standard output]",
+    help="Name of the output: a file.  [default: standard output]",
 )
 @click.option(
     "--fail-on",

@@ -65,7 +65,7 @@ class AnimateOptions:
     "--output",
     type=_FILE,
     metavar="FILE",
-    help=f"Name of the output, a {one_of((*FORMATS, MOVES))} file.  [default: SONG-difficulty.glb]",
+    help=f"Name of the output: a {one_of((*FORMATS, MOVES))} file.  [default: SONG-difficulty.glb]",
 )
 @click.option(
     "--fps",

@@ -85,7 +85,7 @@ class AnnotateOptions:
     "--output",
     type=GivenPath(),
     metavar="DIR",
-    help="Write the changed files into this folder.  [default: into the files]",
+    help="Name of the output: a folder for the changed files.  [default: into the files]",
 )
 @click.option(
     "--into-file",

@@ -60,7 +60,7 @@ class PageOptions:
     "--output",
     type=_FILE,
     metavar="FILE|DIR",
-    help="Name of the output, an .html file, or a folder if PATH is one.  [default: SONG-difficulty.html, pages]",
+    help="Name of the output: an .html file, or a folder if PATH is one.  [default: SONG-difficulty.html, pages]",
 )
 @click.option("--music", is_flag=True, help="Put the music into the page; without it the page asks for the file.")
 @dance_options

@@ -59,7 +59,7 @@ _NO_BACKGROUND = (
     "--output",
     type=GivenPath(),
     metavar="FILE|DIR",
-    help=f"Name of the output, a {one_of(FILES)} file, or a folder if PATH is one.  "
+    help=f"Name of the output: a {one_of(FILES)} file, or a folder if PATH is one.  "
     "[default: SONG-difficulty.mp4, videos]",
 )
 @click.option("--frames", type=GivenPath(), metavar="DIR", help="Write one PNG per frame into this folder, not a film.")

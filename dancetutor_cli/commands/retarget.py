@@ -54,7 +54,7 @@ class RetargetOptions:
     type=_FILE,
     required=True,
     metavar="FILE",
-    help=f"Name of the output, a {one_of(SUFFIXES)} file; a .html page shows input and output.",
+    help=f"Name of the output: a {one_of(SUFFIXES)} file; a .html page shows input and output.",
 )
 @character_option
 @click.option("--animation", metavar="NAME", help="Use this animation of a .glb.  [default: its first]")

@@ -147,7 +147,7 @@ def test_selection(tmp_path: Path) -> None:
     assert Selection("dance-double").one(found).index == 3
     with pytest.raises(UsageError, match=r"--index N: 1: dance-single Hard 9, 2: dance-single Hard 10"):
         Selection("dance-single", "hard").one(found)
-    with pytest.raises(UsageError, match="choose one with --index N: 0 dance-single Easy 3"):
+    with pytest.raises(UsageError, match="choose one with --index N: 0: dance-single Easy 3"):
         Selection("pump-single").one(found)
     with pytest.raises(UsageError, match="Beginner, Easy, Medium, Hard, Challenge, Edit"):
         Selection(None, "insane").charts(found)

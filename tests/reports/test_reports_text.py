@@ -176,5 +176,5 @@ def test_formats_for_review_name_the_rule_once_beside_the_message(name: str) -> 
     song = charts_path() / "two_left_feet" / "two_left_feet.ssc"
     said = CliRunner().invoke(cli, ["analyze", str(song), "--select", "DT509", "--format", name], standalone_mode=False)
     message = "plays 2.7 levels easier than its meter 11, like 8.3 "
-    shown = {"github": "title=DT509 meter-off::", "gitlab": '"description": "'}.get(name, "meter off: ")
+    shown = {"github": "title=DT509 meter-off::", "gitlab": '"description": "'}.get(name, "meter-off: ")
     assert f"{shown}{message}" in said.stdout
