@@ -49,6 +49,10 @@ def test_a_section_that_is_none_is_reported_before_the_file_is_looked_at(tmp_pat
         (["analyze", ".", "--preset"], "--preset needs a value"),
         (["analyze", ".", "--no-cache=3"], "--no-cache takes no value"),
         (["render", ".", "--size", "12"], "--size 12: write width x height, such as 1280x720"),
+        (["render", ".", "--renderer", "gpu"], "--renderer gpu: choose auto, cpu or gl"),
+        (["completion", "tcsh"], "shell tcsh: choose bash, zsh, fish or powershell"),
+        (["analyze", ".", "--tech-counts", "nope"], "--tech-counts nope: no such file or folder"),
+        (["analyze", "-"], "standard input: nothing was read; send a chart to it"),
         (["animate", "a", "b", "-o", "c"], "got unexpected extra argument (b); see dancetutor animate --help"),
     ],
 )
