@@ -127,3 +127,14 @@ def test_stubs_in_a_folder_are_one_warning(tmp_path: Path) -> None:
     assert line.startswith(f"warning: {tmp_path / 's0.sm'}:1: no charts: the file has no NOTES; the same for 6 more: ")
     assert said.out.splitlines()[-1] == "7 files: 7 unchanged"
     assert len(Said([tmp_path, "-v"]).err.splitlines()) == 7
+
+
+def test_a_folder_without_charts_is_no_file(tmp_path: Path) -> None:
+    said = Said([tmp_path])
+    assert said.status == 2
+    assert said.out == "0 files: no file to read in 1 folder\n"
+
+
+def test_a_text_that_is_no_chart_is_told_what_to_give(tmp_path: Path) -> None:
+    (tmp_path / "README.md").write_text("# a\n")
+    assert "README.md: not a chart file; give a .sm, .ssc or .ucs file" in Said([tmp_path / "README.md"]).err

@@ -32,6 +32,7 @@ def test_a_page_is_plain(code: str) -> None:
         ("DT503", "Options: strictly: true\n"),
         ("DT508", "Options: kinds: [mine, roll, hand]\n"),
         ("DT602", "Options: most: 8 ms\n"),
+        ("DT604", "Options: least: 1 song\n"),
         ("DT611", "Options: share: 1 %\n"),
     ],
 )

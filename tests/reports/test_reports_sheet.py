@@ -237,3 +237,8 @@ def test_nothing_is_cut_off_on_screen_or_on_paper(steps_type: str, browser: Call
     browser(f"--print-to-pdf={paper}", page.as_uri())
     pages = len(re.findall(rb"/Type\s*/Page\b", paper.read_bytes()))
     assert pages in (sheet.layout.systems, sheet.layout.systems + 1)  # a page a system; the findings may need one more
+
+
+def test_one_row_is_a_row() -> None:
+    sheet = make_sheet(subject(), [])
+    assert sheet.say("rows", count=1) == "1 row" and sheet.say("rows", count=2) == "2 rows"
