@@ -6,7 +6,7 @@ import sys
 
 
 def _excepthook(kind: type[BaseException], error: BaseException, trace: object) -> None:
-    """Of a Ctrl-C that comes before `__main__.main` can catch it: one line, as of any later one."""
+    """Write one line for a Ctrl-C that comes before `__main__.main` can catch it, as for any later one."""
     if issubclass(kind, KeyboardInterrupt):
         sys.stderr.write("dancetutor: interrupted\n")
     else:

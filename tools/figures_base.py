@@ -77,6 +77,11 @@ def goal_text(figure: dict[str, object]) -> str:
     return f"{bound}{figure['goal']:g}{f' {unit}' if (unit := figure['unit']) else ''}"
 
 
+def with_unit(value: str, figure: dict[str, object]) -> str:
+    """The value, and the figure's unit if it has one."""
+    return f"{value} {figure['unit']}" if figure["unit"] else value
+
+
 @cache
 def _report(arguments: tuple[str, ...]) -> list[dict[str, object]]:
     with tempfile.TemporaryDirectory() as folder:

@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import Any
 
 import motion_report
-from figures_base import DEMO, HARD, Figures, corpus, goal_text, goals, markdown, reported
+from figures_base import DEMO, HARD, Figures, corpus, goal_text, goals, markdown, reported, with_unit
 from motion_report import Measured
 
 from dancetutor_cli.run.pool import default_jobs
@@ -78,7 +78,9 @@ def goals_missed() -> str:
         values = [(f["value"], f) for m in every for f in m.figures if f["name"] == name and f["value"] is not None]
         figure = values[0][1]
         median = statistics.median(value for value, _ in values)
-        rows.append((name, goal_text(figure), f"{count} of {len(values)}", f"{round(median, 4):.3g}"))
+        rows.append(
+            (name, goal_text(figure), f"{count} of {len(values)}", with_unit(f"{round(median, 4):.3g}", figure))
+        )
     return markdown(("figure", "goal", "sections that miss it", "median of all sections"), rows, 2)
 
 

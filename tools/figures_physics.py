@@ -90,11 +90,13 @@ def styles_kept() -> str:
     """The worst of all styles, of the figures that a style could spoil."""
     reports = {name: reported(*passage(name)) for name in STYLES}
     asked = goals(*passage("neutral"))
+    units = {name: goal.split(" ", 3)[3:] for name, goal in asked.items()}  # "at most 1 mm" has one
     rows = []
     for name in KEPT:
         values = {style: report[name] for style, report in reports.items()}
         worst = (min if name == "balance" else max)(values, key=lambda style: values[style])
-        rows.append((name, f"{values[worst]:.3g}", worst if values[worst] else "", asked[name]))
+        value = " ".join((f"{values[worst]:.3g}", *units[name]))
+        rows.append((name, value, worst if values[worst] else "", asked[name]))
     return markdown(("figure", "worst value", "style", "goal"), rows)
 
 

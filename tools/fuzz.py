@@ -112,7 +112,7 @@ def _play(path: Path) -> object:
     chart = load(charts_path() / "two_left_feet" / "two_left_feet.ssc").charts[0]
     pad = load_pad(chart.steps_type)
     assert pad is not None
-    return read_play(path, chart, prepare(chart, pad, 0.35), pad)
+    return read_play(path, chart, prepare(chart, pad, 0.35))
 
 
 def _editor(path: Path) -> object:

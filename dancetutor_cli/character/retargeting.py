@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.dance.rig.skeleton import Skeleton
     from dancetutor_cli.dance.units import Array
 
-SCHEMA = b"1"  # of what a body's tuning depends on besides body and neutral style
+SCHEMA = b"1"  # changes with the form of the kept tuning
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +145,7 @@ class Retargeting:
         """Names of the p retargeting points, and their places (f, p, 3) at the keys of input and output, metres."""
         before, after = self.input_on_body, self.ragdoll_result.motion
         bones = bones_of(self.body)
-        styles, _ = self.blend.within(after.times)  # the one with most first, as the distances are measured
+        styles, _ = self.blend.within(after.times)  # the largest weight comes first: points of that style are measured
         points = tuple(p for p in points_of(self.body, bones, styles[0]) if not p.extra)
         given, made = (place_points(self.body, bones, points, m.rotations, m.root) for m in (before, after))
         return tuple(p.name for p in points), given, made

@@ -63,14 +63,12 @@ class Density:
     mean : rows per second from the first to the last step; peak : rows per second of the densest measure
     breakdown : "32 (4) 16": measures of stream, breaks between them in brackets; "" without a stream
     stream_measures : total number of measures of stream
-    per_measure : rows with a step in every measure, up to the last step
     """
 
     mean: float
     peak: float
     breakdown: str
     stream_measures: int
-    per_measure: tuple[int, ...]
 
 
 def density(chart: Chart, stream_rows: int) -> Density:
@@ -78,7 +76,7 @@ def density(chart: Chart, stream_rows: int) -> Density:
     notes = chart.notes
     ticks = notes.tick[notes.judged & _IS_STEP[notes.kind]]  # ascending
     if not len(ticks):
-        return Density(0.0, 0.0, "", 0, ())
+        return Density(0.0, 0.0, "", 0)
     new = np.ones(len(ticks), dtype=bool)
     np.not_equal(ticks[1:], ticks[:-1], out=new[1:])
     ticks = ticks[new]
@@ -91,9 +89,7 @@ def density(chart: Chart, stream_rows: int) -> Density:
     first, last = seconds[-2:].tolist()
     mean = (len(ticks) - 1) / (last - first) if last > first else 0.0
     stream = counts >= stream_rows
-    return Density(
-        float(mean), float(rates.max()), breakdown(stream.tolist()), int(stream.sum()), tuple(counts.tolist())
-    )
+    return Density(float(mean), float(rates.max()), breakdown(stream.tolist()), int(stream.sum()))
 
 
 def breakdown(stream: Sequence[bool]) -> str:

@@ -52,7 +52,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.dance.plan import Plan
     from dancetutor_cli.dance.request import DanceRequest
     from dancetutor_cli.feet.pads import Pad
-    from dancetutor_cli.feet.play import Play
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,7 +155,7 @@ def solve(request: DanceRequest, chart: ChartChoice | None = None) -> tuple[Solv
 
     one = solved[0]
     assert one.play is not None and one.pad is not None
-    return (replace(one, play=read_play(request.play, one.chart, one.play.rows, one.pad)),)
+    return (replace(one, play=read_play(request.play, one.chart, one.play.rows)),)
 
 
 def perform(solved: Sequence[Solved], request: DanceRequest, rate: float = 1.0) -> Performance:

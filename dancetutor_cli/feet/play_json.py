@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.model import Chart
 from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.feet.limbs import Limb, Part
-from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.play import Play, Rows, StepKind
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.reading import read_json, shown_key
@@ -166,13 +165,13 @@ _LIMB_NUMBERS = {limb.name.lower(): int(limb) for limb in Limb if limb >= 0}
 _PART_NUMBERS = {"heel": int(Part.HEEL), "toe": int(Part.TOE)}
 
 
-def read_play(path: Path, chart: Chart, rows: Rows, pad: Pad) -> Play:
+def read_play(path: Path, chart: Chart, rows: Rows) -> Play:
     """Read the play of `chart` from a JSON file.
 
     Parameters
     ----------
     path : the file; chart : the chart of the play, identified by index, steps type and player
-    rows : the rows of the chart, from `play.prepare`; pad : c panels
+    rows : the rows of the chart, from `play.prepare`, with c panels
 
     Raises FileError if the file does not have this format, or does not fit the chart.
     """

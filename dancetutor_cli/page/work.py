@@ -176,7 +176,7 @@ def _second_play(page: PageSubject) -> tuple[Solved, ...]:
         return ()
     assert one.play is not None and one.pad is not None
     if wanted.lower().endswith(".json"):
-        return (replace(one, play=read_play(Path(wanted), one.chart, one.play.rows, one.pad)),)
+        return (replace(one, play=read_play(Path(wanted), one.chart, one.play.rows)),)
     if wanted != NEXT:
         preset = load_preset(wanted)
         return tuple(solve_song(one.song, [one.chart], lambda _: preset))

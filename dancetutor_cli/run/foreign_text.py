@@ -53,9 +53,8 @@ def _is_formula(cell: str) -> bool:
 # "::error::gone" would make an annotation, and other names could end the masking of secrets.
 
 _OLD = "##["
-_ENDS = "\n\r\v\f\x1c-\x1e\x85\u2028\u2029"  # line breaks of any log reader
+_ENDS = "\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029"  # line breaks of any log reader
 _AT_START = re.compile(rf"(^|[{_ENDS}])(\s*):(?=:)")
-_END_CHARACTERS = "\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029"
 
 
 def without_commands(text: str, *, from_start: bool = True) -> str:
@@ -97,7 +96,7 @@ class GuardedText(io.TextIOWrapper):
         self._remember(text)
 
     def _remember(self, text: str) -> None:
-        begin = max(map(text.rfind, _END_CHARACTERS)) + 1  # of the last line
+        begin = max(map(text.rfind, _ENDS)) + 1  # of the last line
         self._blank = (self._blank or begin > 0) and not text[begin:].strip()
 
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 # collection with the names: a name is hashed as text, a file by its bytes. It may also be a function that returns the
 # value to hash.
 NAMED = "named"
-_PARTS = (".py", ".glb", ".yaml", ".glsl", ".vert", ".frag")  # suffixes of the program's files that affect results
+_PARTS = (".py", ".glb", ".yaml", ".vert", ".frag")  # suffixes of the program's files that affect results
 _TEXT = "utf-8", "surrogateescape"
 
 
@@ -98,7 +98,7 @@ def program_stamp() -> str:
     """Return a faster hash of the program, from sizes and times of its files, for caches of this machine only."""
     parts = [dancetutor_cli.__version__]
     for root in (PACKAGE, config_path("")):
-        parts += [f"{path}{stat.st_size}{stat.st_mtime_ns}" for path, stat in _files(str(root))]
+        parts += [f"{path}{found.st_size}{found.st_mtime_ns}" for path, found in _files(str(root))]
     return hashlib.sha256("".join(parts).encode(*_TEXT)).hexdigest()
 
 

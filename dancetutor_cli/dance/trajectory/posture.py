@@ -61,7 +61,7 @@ class Trajectory:
     listed : (n,) radians that the right hip is lower than the left one
     arms : (n, 5) `swing` and `raised` as in `momentum.CounterMotion`, `pump` and `carried` as in `groove.Groove`
     softened : what had no solution within the limits of legs and soles, so that they gave way; for people
-    hands : what `ik.targets.free_hands` says of it, if somebody has asked already
+    hands : the result of `ik.targets.free_hands` for this trajectory, if it is known
     """
 
     times: Array
@@ -86,14 +86,14 @@ class Trajectory:
 
 @dataclass(frozen=True, slots=True)
 class RoughBake:
-    """The results of a rough bake. trajectory : that it was of
+    """The results of a rough bake.
 
+    trajectory : the one that was baked
     above : (n, 3), centre of mass minus root
     turning : (n, 2) as of `momentum.rotation_zmp_offset`, or None if it is not known
-    deeper : (p,) how far each press of a palm drew the root below where it
-    was wanted, metres, or None for none
-    hips : (n, 2, 3), from the root to each hip, None: as of an upright pelvis
-    push_off : (n, 2) as of `legs.push_off`, None for none
+    deeper : (p,) how far each press of a palm drew the root below its wanted place, metres; None without presses
+    hips : (n, 2, 3), from the root to each hip; None for those of an upright pelvis
+    push_off : (n, 2) as of `legs.push_off`; None without it
     keep : leave the path over the ground as it was; tightened : as in `balanced_path`
     """
 

@@ -75,7 +75,7 @@ class FastStep(ChartRule):
                 bursts.append(rows)
             elif feet and not _free_foot_takes_it(subject, row, self.options["max_speed"]):
                 place, message = _dense(subject, row)
-                least = {"severity": "info"} if _heel_and_toe(subject, row) else {}
+                least = {"severity": "info"} if _has_heel_and_toe(subject) else {}
                 if not message and subject.pause(row) >= _AS_ONE:
                     foot = feet.limb_name(row, column)
                     message = f"the {foot} has to travel {way:.1f} panel widths in {seconds * 1000:.0f} ms"
@@ -129,7 +129,7 @@ class FastStep(ChartRule):
             if beat > end + _PASSAGE and not any(beat - _PASSAGE <= one <= beat for one in known):
                 foot = subject.facts.limb_name(row, column) if subject.facts else "foot"
                 roll = subject.play is not None and subject.play.rows.steps[row, column] == StepKind.ROLL_TAP
-                expected = roll or subject.chart.meter >= _QUICK or _heel_and_toe(subject, row)
+                expected = roll or subject.chart.meter >= _QUICK or _has_heel_and_toe(subject)
                 expected = expected or _free_foot_takes_it(subject, row, self.options["max_speed"])
                 least = {"severity": "info"} if expected else {}
                 yield self.finding(f"the {foot} would have to leap to this panel", subject.at_row(row, column), **least)
@@ -147,7 +147,7 @@ def burst(subject: ChartSubject, row: int) -> list[int]:
     return rows[first : last + 1].tolist() if last - first >= 2 else []
 
 
-def _heel_and_toe(subject: ChartSubject, row: int) -> bool:
+def _has_heel_and_toe(subject: ChartSubject) -> bool:
     """Whether this is a Pump chart whose players take two panels with heel and toe."""
     return subject.chart.steps_type.startswith("pump") and subject.chart.meter >= _HEEL_AND_TOE
 

@@ -15,7 +15,7 @@ export function named(from, to) {
 }
 
 /** Where a stretch ends whose last measure, or the point it goes to, has this name. @param {string} name */
-export function endOf(name) {
+function endOf(name) {
   return Number(name) + (name.includes(".") ? 0 : 1);
 }
 

@@ -64,7 +64,7 @@ class Program(ShaderProgram):  # type: ignore[misc]
         """A vertex array without attributes, for triangles that the shader creates."""
         return int(self._vao_id)
 
-    def set_uniform(self, name: str, value: Any, unsigned: bool = False) -> None:
+    def set_uniform(self, name: str, value: Any) -> None:
         """Set a uniform: int, float, a vector (n,), some vectors (k, n), or a matrix (4, 4).
 
         A uniform that the driver has optimised away, and that is not in the program, is ignored.
