@@ -46,7 +46,7 @@ def test_a_file_changes_only_what_it_names(tmp_path: Path) -> None:
         ),
         ("limits: true\nplacement: top\n", r":2: placement: there is no 'top'; choose end, center, hybrid"),
         ("limits: 1\n", r":1: limits must be true or false, not 1"),
-        ("body: {gravity: 99}\n", r":1: body\.gravity must be a number from -50 to 50 m/s\^2, not 99"),
+        ("body: {gravity: 99}\n", r":1: body\.gravity must be a number from -50 to 50 m/s², not 99"),
         ("body: {mass: 9}\n", r":1: unknown key 'mass' in 'body'; choose gravity"),
         ("springs: {arms: 5}\n", r":1: springs\.arms must be a mapping of frequency, damping, not 5"),
         ("springs: {arms: {frequency: [1, 2], damping: 1}}\n", r"frequency must be one number or three, not \[1, 2\]"),
