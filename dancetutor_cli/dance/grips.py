@@ -30,7 +30,7 @@ from dancetutor_cli.feet.play import runs
 RATE, BODY_RATE = 30.0, 60.0  # checks per second whether the rail is within reach, and samples of the body's path
 # seconds of a song that are handled together, and how far beyond them the start and the end lie
 PART, PART_MARGIN = 60.0, 4.0
-TRUNK_SQUARE = 0.020  # metres more to the sides of a trunk that faces the screen: both arms are bent beside it
+MORE_ASIDE = 0.020  # metres more to the sides of a trunk that faces the screen: both arms are bent beside it
 TRUNK_ASIDE, TRUNK_DEEP = 0.203, 0.163  # metres, half axes of the trunk with a forearm's thickness and some air
 ALONG = np.linspace(0.15, 1.0, 5)  # points of the forearm and the hand that are checked
 ARMS_BACK = 0.022  # metres that the centre of mass lies farther back when the hands are on the rail
@@ -144,7 +144,7 @@ class Arm:
         along = (wrist - elbow) / np.linalg.norm(wrist - elbow, axis=1, keepdims=True)
         end = wrist + HAND * along
         out = np.zeros(len(elbow), dtype=bool)
-        aside = TRUNK_ASIDE + TRUNK_SQUARE * np.abs(np.cos(trunk.yaw[when]))
+        aside = TRUNK_ASIDE + MORE_ASIDE * np.abs(np.cos(trunk.yaw[when]))
         hips, wrung = trunk.turned[when], trunk.yaw[when] - trunk.turned[when]
         for share in ALONG:
             point = elbow + share * (end - elbow)
@@ -257,7 +257,7 @@ def _chance(plan: Plan, second: float) -> tuple[float, float]:
 
 # metres to each side; a place there may be better because a hand can stay longer
 GRIP_OFFSETS = (0.0, 0.05, -0.05, 0.1, -0.1)
-CHECKS = 3  # rounds in which grips are shortened to what arms reach
+SHORTENING_ROUNDS = 3  # rounds in which grips are shortened to what arms reach
 CROSSING_ROUNDS = 2  # rounds of finding out how long a hand that crosses over may stay
 OVERLAP = 0.6  # seconds that a hand stays at most before and after the other one has moved
 LOOK = 10.0  # seconds that are checked together for how long a hand may stay
@@ -292,7 +292,7 @@ def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
         found += list(_pieces(times, arm, context.settings.bar))
     arms = [Arm(side, trunk, busy, context, apart) for side in (0, 1)]
     found += cover_gaps(found, times, arms)
-    for _ in range(CHECKS):  # the body is elsewhere where fewer hands hold her
+    for _ in range(SHORTENING_ROUNDS):  # the body is elsewhere where fewer hands hold her
         found.sort(key=lambda grip: (grip.start, grip.side))
         trunk = trunk_of(replace(plan, grips=tuple(found)), times, context)
         found = [part for grip in found if (part := _shortened(grip, times, trunk, busy, context)) is not None]
@@ -322,13 +322,13 @@ def cover_gaps(grips: list[Grip], times: Array, arms: list[Arm]) -> list[Grip]:
         if a > 0 and b < len(times) and (b - a) / RATE < bar.leave:
             for arm in arms:
                 own = [g for g in (*grips, *out) if g.side == arm.side]
-                if (cover := _over_gap(arm, own, times, (a, b))) is not None:
+                if (cover := _grip_over_gap(arm, own, times, (a, b))) is not None:
                     out.append(cover)
                     break
     return out
 
 
-def _over_gap(arm: Arm, own: list[Grip], times: Array, gap: tuple[int, int]) -> Grip | None:
+def _grip_over_gap(arm: Arm, own: list[Grip], times: Array, gap: tuple[int, int]) -> Grip | None:
     """Return a grip of the arm over the checks of the gap and some time around it, None if the hand cannot be there.
 
     own : the other grips of this hand

@@ -132,9 +132,7 @@ NODE_RATE, ROUGH_RATE = 80.0, 40.0  # nodes per second of the path, and of a rou
 UNIT = 0.03  # metres; scales the programme
 NARROWER, NARROWEST = 0.05, 0.01  # metres: largest move of a limit in a round, and least distance of two limits
 NEAR, END = 1e-5, 0.1  # weight of the middle of the soles in general, and at both ends of the path
-LEANS = (
-    0.15  # metres behind the farthest place of the centre of mass to which hands on a bar carry the zero-moment point
-)
+SUPPORT_BEHIND = 0.15  # metres behind the farthest place of the mass; hands on a bar carry the support so far
 GIVE_SUPPORT, GIVE_REACH = 0.0005, 0.01  # costs of leaving the soles and of stretching, see `quadratic.Limits`
 
 
@@ -177,7 +175,7 @@ class Rail:
     def supported(self, support: Support) -> Support:
         """Return the support with a place a little farther back than where she stays within reach."""
         on = self.held[:, None]
-        place = np.column_stack((support.middle[:, 0], self.ahead - LEANS))
+        place = np.column_stack((support.middle[:, 0], self.ahead - SUPPORT_BEHIND))
         along = along_sides(support.across, place)
         low = np.where(on, np.minimum(support.low, along), support.low)
         high = np.where(on, np.maximum(support.high, along), support.high)

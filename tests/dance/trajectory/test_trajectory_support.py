@@ -8,7 +8,7 @@ from scipy.spatial import ConvexHull
 
 from dancetutor_cli.dance.foot_path import FootPath
 from dancetutor_cli.dance.rig.body import SOLE_BACK_HEEL, SOLE_FRONT, SOLE_HALF_WIDTH
-from dancetutor_cli.dance.trajectory.balance import LEANS, Rail, along_sides, support_of
+from dancetutor_cli.dance.trajectory.balance import SUPPORT_BEHIND, Rail, along_sides, support_of
 
 HEEL = np.radians(1.2)
 
@@ -57,7 +57,7 @@ def test_hands_on_a_bar_support_her_behind_her_soles_and_keep_her_near() -> None
     ahead, held = np.full(60, -0.6), np.arange(60) % 2 == 0
     rail = Rail(ahead, held, 0.05)
     more = rail.supported(support)
-    place = np.column_stack((support.middle[:, 0], ahead - LEANS))
+    place = np.column_stack((support.middle[:, 0], ahead - SUPPORT_BEHIND))
     along = along_sides(support.across, place)
     carried = ((along >= more.low - 1e-9) & (along <= more.high + 1e-9)).all(axis=1)
     assert carried.tolist() == held.tolist(), "no sole reaches so far back"
