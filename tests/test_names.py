@@ -24,11 +24,6 @@ RIDDLES |= {"lack", "lacks", "good", "tall", "some", "blame", "lately", "trodden
 IRREGULAR = {"drawn", "flown", "grown", "heard", "held", "kept", "made", "risen", "shown", "swung", "written"}
 # Participles that are nouns of the field (a direction, what a rule reports) or also the adjective of a side.
 NOUNS = {"facing", "finding", "heading", "left"}
-# What is still to be renamed, in modules that other work changes now.
-LATER = {
-    "dance/bake.py: posed", "dance/gait.py: walking", "dance/grips.py: Arm.reached", "dance/ik/targets.py: lately",
-    "dance/trajectory/posture.py: stepping",
-}  # fmt: skip
 CONTAINERS = {"None", "tuple", "list", "dict", "Sequence", "Iterator", "Iterable", "Mapping", "bool", "int", "float"}
 
 
@@ -112,8 +107,7 @@ def test_public_functions_are_verbs_or_the_noun_of_their_result() -> None:
         for name, function in named
         if is_participle(function.name) and not changes_a_copy(name.partition(": ")[2], function)
     ]
-    assert sorted({*riddles, *participles} - LATER) == []
-    assert {*riddles, *participles} >= LATER, "what is renamed leaves the list"
+    assert sorted({*riddles, *participles}) == []
 
 
 @pytest.mark.parametrize(

@@ -104,8 +104,8 @@ def _ik_rate() -> float:
     targets = Targets(
         pelvis, turn, turn, shoulders, wrists, pair, np.zeros((frames, 2)), -poles, ankles, pair, pair, poles
     )
-    ik.solve(skeleton, targets, 0.8055)
-    return frames / _seconds(lambda: ik.solve(skeleton, targets, 0.8055))
+    ik.solve_poses(skeleton, targets, 0.8055)
+    return frames / _seconds(lambda: ik.solve_poses(skeleton, targets, 0.8055))
 
 
 if __name__ == "__main__":

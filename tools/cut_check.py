@@ -42,7 +42,7 @@ def main() -> None:
         except DancetutorError as error:
             print(error)
             continue
-        whole = performance.motions()
+        whole = performance.bake()
         first, last = performance.span
         for _ in range(2):
             start = float(chance.uniform(first, max(last - 8.0, first)))
@@ -50,7 +50,7 @@ def main() -> None:
             found = []
             for cut in (Cut(start, end), Cut(start - 2.0, end + 1.5, start, end)):
                 edge = END if cut.start < start else 0.0
-                parts = performance.motions(replace(cut, walks_off=edge == 0.0))
+                parts = performance.bake(replace(cut, walks_off=edge == 0.0))
                 pairs = zip(whole, parts, strict=True)
                 found.append(max(apart(a.motion, b.motion, start + edge, end - edge) for a, b in pairs))
             worst = max(worst, *found)

@@ -53,7 +53,7 @@ def forms() -> str:
     rows = []
     for name, words in FORMS.items():
         request = DanceRequest(ROOT / DEMO, Selection(index=int(HARD[1])), form=name)
-        motion = perform(solve(request), request).motions(SECTION)[0].motion
+        motion = perform(solve(request), request).bake(SECTION)[0].motion
         away, out = landed(motion)
         rows.append((f"`{name}`", words, f"{1000 * away:.0f}", f"{abs(out):.0f}°", f"{body_turn(motion):.0f}°"))
     return markdown(("form", "what a player does", "ball, mm", "toes out", "turned"), rows, 2)

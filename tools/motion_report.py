@@ -206,7 +206,7 @@ def measure(wanted: Wanted, preset: str | None, bar: bool, length: float = 0.0) 
         start = section_start(stepped, wanted.place, length)
         cut = Cut(start, start + length)
         stepped = stepped[(stepped >= start) & (stepped <= start + length)]
-    motion = performance.motions(cut)[0].motion
+    motion = performance.bake(cut)[0].motion
     found = as_json(report(motion, mines_of(dancer.play, dancer.pad)))
     return Measured(
         wanted.path, wanted.index, wanted.label, len(stepped), float(np.ptp(stepped)) if len(stepped) else 0.0,

@@ -96,7 +96,7 @@ def baked(moments: Moments, changed: Path | None = None) -> tuple[Motion, Any]:
     """The motion around these moments, and its pad; changed : a file of changed numbers of the motion."""
     request = DanceRequest(moments.chart, Selection(index=moments.index, player=1), bar=moments.bar, motion=changed)
     performance = perform(solve(request), request)
-    return performance.motions(Cut(*moments.section))[0].motion, performance.pad
+    return performance.bake(Cut(*moments.section))[0].motion, performance.pad
 
 
 def baked_before(commit: str, moments: Moments) -> Motion:

@@ -37,7 +37,7 @@ def main() -> None:
     key = []
     for letter, name in zip("ABCDEFGHIJ", names, strict=False):
         performance = perform(solved, replace(request, style=name))
-        motion = performance.motions(Cut(start - AROUND, end + AROUND))[0].motion
+        motion = performance.bake(Cut(start - AROUND, end + AROUND))[0].motion
         sheet(motion, performance.pad, np.linspace(start, end, options.count)).save(options.folder / f"{letter}.png")
         key.append(f"{letter} {name}\n")
     Path(f"{options.folder}.key").write_text("".join(key), encoding="utf-8")

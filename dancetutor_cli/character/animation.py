@@ -34,7 +34,7 @@ class Animation:
     @cached_property
     def baked_pieces(self) -> list[BakedPiece]:
         """The motion of each dancer on the dancer's own pad, with the body of the project's dancer."""
-        return self.performance.motions(None if self.section is None else Cut(*self.section), self.run)
+        return self.performance.bake(None if self.section is None else Cut(*self.section), self.run)
 
     @property
     def begin(self) -> float:

@@ -11,7 +11,7 @@ In this package "she" is the dancer, whatever character the user draws.
     trajectory.posture.Trajectory   the path and posture of the body over the feet, at even times
       |   ik.targets.ik_targets       computes where pelvis, shoulders, hands and feet must be
     ik.full_body.Targets
-      |   ik.full_body.solve          solves all joints at once
+      |   ik.full_body.solve_poses    solves all joints at once
     units.Poses                     local rotations and root
       |   layers                      adds gaze, glances, breath, blinks, wrists, hands
     motion.Motion                   the input of files, films and the quality report

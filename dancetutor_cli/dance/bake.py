@@ -14,8 +14,8 @@ from dancetutor_cli.dance.face import add_face, mood_at, peeks_at, with_peeks
 from dancetutor_cli.dance.foot_path import Feet, both_feet
 from dancetutor_cli.dance.footwork.planner import plan_footwork
 from dancetutor_cli.dance.ik.ankles import ease_ankles, rolled_soles
-from dancetutor_cli.dance.ik.full_body import solve
-from dancetutor_cli.dance.ik.targets import free_hands, translated
+from dancetutor_cli.dance.ik.full_body import solve_poses
+from dancetutor_cli.dance.ik.targets import FreeHands, free_hands, translated
 from dancetutor_cli.dance.keys import Keys, doubtful, key_times, refined
 from dancetutor_cli.dance.layers import Activity, add_fingers, add_layers, curls, glances_at, hand_use, look
 from dancetutor_cli.dance.motion import Motion
@@ -36,7 +36,7 @@ from dancetutor_cli.dance.settings import MotionSettings, SettingsCourse, Span, 
 from dancetutor_cli.dance.settings_feet import WalkSettings
 from dancetutor_cli.dance.settle import heels_may_rise, settle, targets_at
 from dancetutor_cli.dance.smoothing import sample_path
-from dancetutor_cli.dance.trajectory.posture import Trajectory, stepping
+from dancetutor_cli.dance.trajectory.posture import Trajectory, lift_side
 from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.dance.waits import waiting_at
 from dancetutor_cli.feet.unplayable import DroppedNote, without_unplayable
@@ -175,13 +175,13 @@ def bake_piece(piece: Piece) -> BakedPiece:
 
         body = mean_body(bodies, changes)
     # all keys need the free hands, and so does each round of more keys: they are computed once
-    bodies_by_state = tuple((replace(body, hands=free_hands(plan, body, one)), one) for one in states)
+    hands = [(one, free_hands(plan, body, one)) for one in states]
     at = key_times(plan, piece.fps, *piece.baked)
-    keys = (at, *_posed_in(plan, bodies_by_state, at, changes))
+    keys = (at, *_pose_states(plan, body, hands, at, changes))
     for _ in range(REFINEMENTS):
         middles = doubtful(skeleton, keys, plan.grips)
         if len(middles):
-            between = (middles, *_posed_in(plan, bodies_by_state, middles, changes))
+            between = (middles, *_pose_states(plan, body, hands, middles, changes))
             keys = refined(skeleton, keys, between, plan.grips)
     first, last = piece.baked
     notes = tuple(
@@ -216,28 +216,34 @@ def _followed(motion: Motion, piece: Piece, ragdoll: RagdollStyle) -> BakedPiece
     return BakedPiece(replace(passed.motion, notes=notes), passed.distances)
 
 
-def _posed_in(plan: Plan, bodies: Sequence[tuple[Trajectory, Context]], at: Array, changes: Sequence[Span]) -> Poses:
-    """Return the poses at times `at` (f,). Each state has its context, and states turn into each other in `changes`."""
-    feet = [both_feet(plan.feet, at, context.settings) for _, context in bodies]
-    if len(bodies) == 1:
-        return posed(plan, bodies[0][0], (at, feet[0]), bodies[0][1])
+def _pose_states(
+    plan: Plan, body: Trajectory, hands: Sequence[tuple[Context, FreeHands]], at: Array, changes: Sequence[Span]
+) -> Poses:
+    """Return the poses at times `at` (f,). States turn into each other in `changes`; hands : of each state, its context
+    and its free hands
+    """
+    feet = [both_feet(plan.feet, at, context.settings) for context, _ in hands]
+    if len(hands) == 1:
+        return pose_body(plan, body, (at, feet[0]), *hands[0])
     from dancetutor_cli.dance.changes import mean_feet, mean_of_states
 
     weights = state_weights(changes, at)
     mean = mean_feet(feet, weights)
-    poses = [posed(plan, body, (at, mean), context) for body, context in bodies]
-    return mean_of_states(bodies[0][1].skeleton, poses, weights)
+    poses = [pose_body(plan, body, (at, mean), context, free) for context, free in hands]
+    return mean_of_states(hands[0][0].skeleton, poses, weights)
 
 
-def posed(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Context) -> Poses:
+def pose_body(
+    plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Context, free_hands: FreeHands
+) -> Poses:
     """Solve the body at times (f,), and move it until its centre of mass, with the head, is on its path.
 
-    sampled : the times, and the feet at these times
+    sampled : the times, and the feet at these times; free_hands : at the body's times
     """
     skeleton, settings, reach = context.skeleton, context.settings, context.settings.body.reach
     at, feet = sampled
-    targets = targets_at(plan, body, (at, feet), context)
-    poses = solve(skeleton, targets, reach, 0.0)
+    targets = targets_at(plan, body, (at, feet), context, free_hands)
+    poses = solve_poses(skeleton, targets, reach, 0.0)
     ground = sample_path(body.mass, body.times, at)
     goal = np.column_stack((ground[:, 0], body.mass_height.at(at), ground[:, 1]))
     waiting = waiting_at(plan, at, context)
@@ -246,9 +252,14 @@ def posed(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Co
     mood, peeks = mood_at(plan, body, at, context), peeks_at(plan, free, at, context)
     glances = with_peeks(glances_at(plan, body, at, context), mood, peeks, free, settings.face)
     doing = Activity(
-        stepping(feet, context.settings), free, plan.lead, mood.relief, sample_path(body.beat, body.times, at), waiting,
+        lift_side(feet, settings),
+        free,
+        plan.lead,
+        mood.relief,
+        sample_path(body.beat, body.times, at),
+        waiting,
         glances,
-    )  # fmt: skip
+    )
     trial = Poses(poses.rotations.copy(), poses.root)
     look(trial, body, at, context)
     add_layers(trial, at, doing, context)
@@ -256,11 +267,11 @@ def posed(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Co
     head = mass_of(skeleton, trial) - mass  # hardly changes as the body is moved
     for k in range(CORRECTIONS):
         targets = translated(targets, goal - head - (mass if k == 0 else mass_of(skeleton, poses)))
-        poses = solve(skeleton, targets, reach, 0.0)
+        poses = solve_poses(skeleton, targets, reach, 0.0)
     rises = heels_may_rise(plan, at, settings.step.press_time)
     rolled = rolled_soles(skeleton, plan, (at, feet, targets, poses), rises)
     if rolled is not None:
-        poses = solve(skeleton, rolled, reach, 0.0)
+        poses = solve_poses(skeleton, rolled, reach, 0.0)
     ease_ankles(skeleton, poses, feet)
     look(poses, body, at, context)
     add_layers(poses, at, doing, context)

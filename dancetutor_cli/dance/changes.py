@@ -25,7 +25,6 @@ _PATHS = {field.name for field in fields(Trajectory)} - {
     "times",
     "mass_height",
     "softened",
-    "hands",
 }  # arrays over time
 
 
@@ -78,4 +77,4 @@ def mean_body(bodies: Sequence[Trajectory], changes: Sequence[Span]) -> Trajecto
         paths[name] = np.einsum("fk,kf...->f...", weights, values)
     height = MeanHeight(tuple(body.mass_height for body in bodies), tuple(changes))
     softened = tuple(dict.fromkeys(what for body in bodies for what in body.softened))
-    return replace(first, mass_height=height, softened=softened, hands=None, **paths)
+    return replace(first, mass_height=height, softened=softened, **paths)

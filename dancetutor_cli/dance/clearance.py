@@ -57,7 +57,7 @@ def _at_one_speed(s: Array, ends: float) -> Array:
     return np.asarray(speed * (s - ends / 2 + ((ends - first) ** 2 - last**2) / (2.0 * ends)))
 
 
-def risen(s: Array, step: StepSettings, even: ArrayLike = 0.0) -> Array:
+def rise_share(s: Array, step: StepSettings, even: ArrayLike = 0.0) -> Array:
     """Return how high a foot is in a step, 0 to 1, at each part of its time; it meets the ground at a definite speed.
 
     The more evenly it moves, the sooner it is up and the later it is down, because a foot near the ground must not

@@ -43,19 +43,19 @@ def squares_on_ground(pad: Pad) -> Array:
     return np.asarray((pad.squares - np.asarray(pad.centre, dtype=np.float64)) * np.array([-PANEL, PANEL]))
 
 
-def heading(yaw: float) -> Array:
+def direction_of(yaw: float) -> Array:
     """Return the unit vector (x, z) in the direction of a yaw, radians."""
     return np.array([np.sin(yaw), np.cos(yaw)])
 
 
 def ball_of(middle: Array, yaw: float) -> Array:
     """Return the ball of a foot from the middle of its sole."""
-    return np.asarray(middle + BALL_AHEAD * heading(yaw))
+    return np.asarray(middle + BALL_AHEAD * direction_of(yaw))
 
 
 def middle_of(ball: Array, yaw: float) -> Array:
     """Return the middle of the sole of a foot from its ball."""
-    return np.asarray(ball - BALL_AHEAD * heading(yaw))
+    return np.asarray(ball - BALL_AHEAD * direction_of(yaw))
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +78,7 @@ def room_on(panels: Array, column: int, step: StepSettings) -> Array:
 
 def on_panel(ball: Array, toes: float, spot: Spot) -> Array:
     """Return the place nearest to this ball (2,) that keeps ball and middle of the sole in their allowed places."""
-    centre, room, ahead = spot.centre, spot.room, BALL_AHEAD * heading(toes)
+    centre, room, ahead = spot.centre, spot.room, BALL_AHEAD * direction_of(toes)
     ball = np.minimum(np.maximum(ball, centre - room), centre + room)  # np.clip takes three times as long
     low, high = centre - spot.middle_room, centre + spot.middle_room
     return np.asarray(np.minimum(np.maximum(ball - ahead, low), high) + ahead)
@@ -213,12 +213,12 @@ def hold_share(grips: tuple[Grip, ...], times: Array, reach: float) -> Array:
     """Return how much each hand is at the rail, (n, 2), 0 to 1: 1 from a grip's start to its end."""
     out = np.zeros((len(times), 2))
     for grip in grips:
-        near = around(grip, times, reach)
+        near = grip_slice(grip, times, reach)
         out[near, grip.side] += grip_share(grip, times[near], reach)
     return np.minimum(out, 1.0)
 
 
-def around(grip: Grip, times: Array, reach: float) -> slice:
+def grip_slice(grip: Grip, times: Array, reach: float) -> slice:
     """Return the slice of the times (n,) at which the hand of a grip is on its way or at the rail."""
     long = way_time(grip, reach)
     return slice(*np.searchsorted(times, (grip.start - long, grip.end + long)).tolist())
@@ -235,7 +235,7 @@ def grip_share(grip: Grip, times: Array, reach: float) -> Array:
     return smooth((times - grip.start + long) / long) * smooth((grip.end + long - times) / long)
 
 
-def held_at(motion: Motion, second: float) -> list[Contact]:
+def held_notes(motion: Motion, second: float) -> list[Contact]:
     """Return the notes that feet hold at a second. They stay among the contacts, so a report counts them as missed."""
     feet = (c for c in motion.contacts if c.limb < Limb.LEFT_HAND and c.kind == StepKind.HOLD)
     return [c for c in feet if c.start < second and c.end > second + HOLD_GRACE]

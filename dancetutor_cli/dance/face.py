@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.dance.context import Context
-from dancetutor_cli.dance.ik.targets import lately
+from dancetutor_cli.dance.ik.targets import moving_mean
 from dancetutor_cli.dance.layers import Glances
 from dancetutor_cli.dance.plan import Plan, Step, Swing, chance_of
 from dancetutor_cli.dance.rig import quaternion as quat
@@ -54,7 +54,7 @@ class Peeks:
 def mood_at(plan: Plan, body: Trajectory, at: Array, context: Context) -> Mood:
     """Return the dancer's mood at times `at` (f,), seconds, from the steps around the body's even times."""
     numbers, times = context.settings.face, body.times
-    effort = lately(tempo_factor(plan, times, context.settings), 1.0 / float(times[1] - times[0]), numbers.around)
+    effort = moving_mean(tempo_factor(plan, times, context.settings), 1.0 / float(times[1] - times[0]), numbers.around)
     effort = np.maximum(effort, body.reaching.max(axis=1))
     faded = (times - times[0]) / numbers.fades
     before = np.maximum.accumulate(effort + faded) - faded

@@ -18,13 +18,25 @@ from dancetutor_cli.dance.clearance import (
     headings,
     hovering,
     lag,
-    risen,
+    rise_share,
     segment_gaps,
     shoe_line,
     travel_share,
     turn_share,
 )
-from dancetutor_cli.dance.plan import STRAIGHT, FootTrack, Gallop, Hover, Jump, Move, Pivot, Shake, Step, Swing, Walk
+from dancetutor_cli.dance.plan import (
+    STRAIGHT,
+    FootTrack,
+    Gallop,
+    Hover,
+    Jump,
+    Move,
+    Pivot,
+    Shake,
+    Step,
+    Swing,
+    WalkStep,
+)
 from dancetutor_cli.dance.rig.body import BALL_AHEAD, dancer_foot
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_feet import WalkSettings
@@ -136,9 +148,9 @@ def foot_path(track: FootTrack, times: Array, settings: MotionSettings) -> FootP
         ball[:, 1] = track.start_level
         return FootPath(ball, np.full_like(times, track.start_yaw), still, np.ones(len(times), dtype=bool), still)
     done, i, swinging, s, even, ground, turned = _over_ground(track, times, settings)
-    level = np.array([track.start_level, *(m.level if isinstance(m, Walk) else 0.0 for m in moves)])
+    level = np.array([track.start_level, *(m.level if isinstance(m, WalkStep) else 0.0 for m in moves)])
     climb = _climb(level[i], level[np.minimum(i + 1, len(level) - 1)], s, settings.walk)
-    up = np.where(swinging, _height(track, i, s, risen(s, step, even)) + climb, 0.0)
+    up = np.where(swinging, _height(track, i, s, rise_share(s, step, even)) + climb, 0.0)
     ball = np.column_stack((ground[:, 0], np.where(swinging, up, level[done]), ground[:, 1]))
     pitch = np.where(swinging, _swing_pitch(track, i, s, step.pitch_top), _stand_pitch(track, times, done, settings))
     for k in np.flatnonzero(_are(track, Shake)):
@@ -262,7 +274,7 @@ def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], e: Array) -> A
 
 
 def _height(track: FootTrack, i: NDArray[np.int64], s: Array, step: Array) -> Array:
-    """Height of the sole; step : as of `risen`."""
+    """Height of the sole; step : as of `rise_share`."""
     height = np.array([m.height if isinstance(m, Swing) else 0.0 for m in track.moves])[i]
     tuck = np.array([m.tuck if isinstance(m, Jump) else 0.0 for m in track.moves])[i]
     # pulled up at once, because a leg that trails behind is stretched as the body leaves the ground
@@ -290,7 +302,7 @@ def _stand_pitch(track: FootTrack, times: Array, done: NDArray[np.int64], settin
     stood = np.maximum(leaves - landed, 1e-9)  # a foot may leave as it lands
     rest = np.where(stood < step.heel_stays, touch, rest)
     drop = np.minimum(step.heel_drop, step.heel_drop_share * stood)
-    early = [settings.walk.heel_rise if isinstance(m, Walk) else step.heel_rise for m in moves]
+    early = [settings.walk.heel_rise if isinstance(m, WalkStep) else step.heel_rise for m in moves]
     rise = np.minimum(np.array([*early, step.heel_rise])[done], step.heel_rise_share * stood)
     falling = rest + (touch - rest) * (1.0 - smooth((times - landed) / drop))
     return np.asarray(falling + (leave - rest) * smooth(1.0 - (leaves - times) / rise))

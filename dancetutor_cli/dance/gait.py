@@ -1,9 +1,9 @@
 """Gaits: how pelvis, chest and hands move with the steps of a walk, and how two gaits are blended.
 
 A gait's curves use normalised time: 0 is a landing of the left foot, 0.5 one of the right foot, 1 the next one of the
-left foot. Two gaits are blended pose by pose at the same normalised time, and the blend's cycle takes (T2 - T1) a + T1
-seconds (the blog of the project's sources). So feet that land at one normalised time in both gaits land at that time in
-the blend.
+left foot. Two gaits with cycles of T1 and T2 seconds are blended pose by pose at the same normalised time, and the
+blend's cycle takes (T2 - T1) share + T1 seconds (P. Massoudi, a blog on character animation, 2013).
+So feet that land at one normalised time in both gaits land at that time in the blend.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from functools import cache
 
 import numpy as np
 
-from dancetutor_cli.dance.plan import Plan, Route
+from dancetutor_cli.dance.plan import Plan, Walk
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import half_hips
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
@@ -64,7 +64,7 @@ class GaitPose:
     sink: Array
 
 
-def gait_pose(gait: Gait, phase: Array, walk: WalkSettings) -> GaitPose:
+def gait_pose(gait: Gait, phase: Array, settings: WalkSettings) -> GaitPose:
     """Return the pose of a gait at normalised times (f,)."""
     angle = 2 * np.pi * phase
     ones = np.ones_like(phase)
@@ -73,22 +73,22 @@ def gait_pose(gait: Gait, phase: Array, walk: WalkSettings) -> GaitPose:
     forward = np.cos(angle)  # 1 as the left foot lands, far ahead
     step = (2 * phase) % 1.0
     low = half_hips(dancer_skeleton()) * np.sin(np.radians(gait.hip_drop))  # legs must reach down from a raised hip too
-    sink = low + gait.plant * np.sin(np.pi * np.minimum(step / walk.sinking, 1.0)) ** 2
+    sink = low + gait.plant * np.sin(np.pi * np.minimum(step / settings.sinking, 1.0)) ** 2
     return GaitPose(
         roll,
         -np.radians(gait.pelvis_yaw) * forward,
         np.radians(gait.chest_yaw) * forward,
         np.radians(gait.hips) * ones,
         np.radians(gait.arch) * ones,
-        gait.arms * np.column_stack((-forward, forward)) - walk.hands_back,
+        gait.arms * np.column_stack((-forward, forward)) - settings.hands_back,
         ones,
         sink,
     )
 
 
-def blended_pose(gaits: tuple[Gait, Gait], share: float, phase: Array, walk: WalkSettings) -> GaitPose:
+def blended_pose(gaits: tuple[Gait, Gait], share: float, phase: Array, settings: WalkSettings) -> GaitPose:
     """Return the blend of both gaits' poses at the same normalised times (f,); share : of the quick one, 0 to 1"""
-    a, b = (gait_pose(gait, phase, walk) for gait in gaits)
+    a, b = (gait_pose(gait, phase, settings) for gait in gaits)
     mixed = (getattr(a, f.name) + share * (getattr(b, f.name) - getattr(a, f.name)) for f in fields(GaitPose))
     return GaitPose(*mixed)
 
@@ -117,7 +117,7 @@ def load_gait(name: str) -> tuple[Gait, Gait]:
     return gaits.slow, gaits.quick
 
 
-def walking(walks: tuple[Route, ...], times: Array, settings: WalkSettings) -> GaitPose | None:
+def walk_pose(walks: tuple[Walk, ...], times: Array, settings: WalkSettings) -> GaitPose | None:
     """Return the movements of all walks at `times` (f,), fading in and out; None without a walk."""
     total: GaitPose | None = None
     for walk in walks:
@@ -141,7 +141,7 @@ def walking(walks: tuple[Route, ...], times: Array, settings: WalkSettings) -> G
 def gaze_ahead(plan: Plan, times: Array, settings: WalkSettings) -> Array:
     """Return how much (f,) the dancer looks where she goes, not at the screen: on her way to the pad or from it."""
     walks = tuple(w for w in plan.walks if w.end <= plan.first or w.start >= plan.last)
-    gait = walking(walks, times + settings.gaze_ahead, settings)
+    gait = walk_pose(walks, times + settings.gaze_ahead, settings)
     return np.zeros(len(times)) if gait is None else gait.own
 
 

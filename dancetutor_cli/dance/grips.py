@@ -9,7 +9,7 @@ import numpy as np
 
 from dancetutor_cli.dance.context import ACROSS_SLOWER, Context, grip_phrases, on_rail, way_time
 from dancetutor_cli.dance.foot_path import both_feet
-from dancetutor_cli.dance.ik.full_body import ArmGoal, arm_rotations, solve
+from dancetutor_cli.dance.ik.full_body import ArmGoal, arm_rotations, solve_poses
 from dancetutor_cli.dance.ik.hands import Torso, elbows_across, elbows_on_bar, inward, rest_on_bar
 from dancetutor_cli.dance.ik.targets import ik_targets
 from dancetutor_cli.dance.motion import Grip
@@ -21,7 +21,7 @@ from dancetutor_cli.dance.rig.skeleton import beyond
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_arms import BarSettings
 from dancetutor_cli.dance.trajectory.facing import wrapped
-from dancetutor_cli.dance.trajectory.posture import RoughBake, body_trajectory
+from dancetutor_cli.dance.trajectory.posture import bake_at_rest, body_trajectory
 from dancetutor_cli.dance.units import Array, Flags
 from dancetutor_cli.feet.play import runs
 
@@ -69,13 +69,14 @@ def _part(plan: Plan, at: Array, context: Context) -> BarTrunk:
     low, high = (at[0] - PART_MARGIN) * BODY_RATE, (at[-1] + PART_MARGIN) * BODY_RATE
     grid = np.arange(np.floor(low), np.ceil(high) + 1) / BODY_RATE
     feet = both_feet(plan.feet, grid, context.settings)
-    body = body_trajectory(plan, grid, feet, context)
+    rest = bake_at_rest(plan, grid, context)
+    body = body_trajectory(plan, grid, feet, context, rest)
     targets = ik_targets(replace(plan, grips=()), body, feet, grid, context)
-    poses = solve(skeleton, targets, context.settings.body.reach)
+    poses = solve_poses(skeleton, targets, context.settings.body.reach)
     places, world = world_transforms(skeleton, *poses)
     above = centre_of_mass(skeleton, places, world) - poses.root
     above[:, 2] -= ARMS_BACK
-    body = body_trajectory(plan, grid, feet, context, RoughBake(body, above))
+    body = body_trajectory(plan, grid, feet, context, replace(rest, trajectory=body, above=above))
     now = np.round((at - grid[0]) * BODY_RATE).astype(np.int64)
     pelvis = np.column_stack((body.ground[now, 0], body.height[now], body.ground[now, 1]))
     shoulders = [places[now, skeleton.index(f"{s}_shoulder")] - poses.root[now] + pelvis for s in SIDES]
@@ -119,7 +120,7 @@ class Arm:
         joint = shoulder + quat.rotate(quat.multiply(chest, joints[0]), upper)
         return np.asarray(near & ~self._in_trunk(joint, wrist, when) & ~self.busy[when])
 
-    def reached(self, x: float, start: int, stop: int) -> tuple[int, int]:
+    def reachable_span(self, x: float, start: int, stop: int) -> tuple[int, int]:
         """Return the first and the last check, from `start` to `stop`, at which the hand may rest at x and can reach
         and leave this place beside the trunk. While the dancer turns quickly it comes later, or leaves earlier.
         """
@@ -213,7 +214,7 @@ def _longest_crossing(arm: Arm, a: int, b: int) -> tuple[int, int, float]:
         middle = float(np.median(arm.place[a:b])) + (-1.0, 1.0)[arm.side] * farther
         x = float(on_rail(np.array([middle]), arm.bar, bar.from_end)[0])
         for first, end in runs(firm(arm.fits(np.full(b - a, x), slice(a, b)), bar.early)).tolist():
-            start, stop = arm.reached(x, a + first, a + end)
+            start, stop = arm.reachable_span(x, a + first, a + end)
             if stop - start > best[1] - best[0]:
                 best = start, stop, x
     return best
@@ -304,7 +305,7 @@ def _shortened(grip: Grip, times: Array, trunk: BarTrunk, busy: Flags, context: 
     arm = Arm(grip.side, trunk, busy, context, None if grip.across else np.zeros(len(times)))
     a, b = np.searchsorted(times, (grip.start, grip.end + 0.5 / RATE)).tolist()
     free = firm(arm.fits(np.full(b - a, grip.x), slice(a, b)), 0.0 if grip.across else context.settings.bar.early)
-    spans = [arm.reached(grip.x, a + first, a + end) for first, end in runs(free).tolist()]
+    spans = [arm.reachable_span(grip.x, a + first, a + end) for first, end in runs(free).tolist()]
     start, stop = max(spans, key=lambda s: s[1] - s[0], default=(a, a))
     shortest = context.settings.across.shortest if grip.across else context.settings.bar.shortest
     if stop - start < shortest * RATE:
@@ -345,7 +346,7 @@ def _grip_over_gap(arm: Arm, own: list[Grip], times: Array, gap: tuple[int, int]
         x = float(on_rail(np.array([arm.place[a:b].mean() + (1.0, -1.0)[arm.side] * aside]), arm.bar, bar.from_end)[0])
         free = firm(arm.fits(np.full(high - low, x), slice(low, high)), 0.0)
         for first, end in (low + runs(free)).tolist():
-            start, stop = arm.reached(x, first, end)
+            start, stop = arm.reachable_span(x, first, end)
             if start <= a and stop >= b and stop - start >= bar.shortest * RATE:
                 return Grip(float(times[start]), float(times[stop - 1]), arm.side, x)
     return None
@@ -371,7 +372,7 @@ def _pieces(times: Array, arm: Arm, bar: BarSettings) -> Iterator[Grip]:
         start = max(first, last)
         while end - start >= least:
             x, stop = _longest(arm, start, end)
-            start, stop = arm.reached(x, start, stop)
+            start, stop = arm.reachable_span(x, start, stop)
             if stop - start >= least:
                 yield Grip(float(times[start]), float(times[stop - 1]), arm.side, x)
                 start = last = stop + pause

@@ -8,8 +8,8 @@ from itertools import pairwise
 import numpy as np
 
 from dancetutor_cli.dance.context import Context, hold_share
-from dancetutor_cli.dance.ik.targets import lately
-from dancetutor_cli.dance.plan import Plan, Swing, Walk, chance_of
+from dancetutor_cli.dance.ik.targets import moving_mean
+from dancetutor_cli.dance.plan import Plan, chance_of
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import SIDES, hand_direction, palm_normal, world_transforms
 from dancetutor_cli.dance.rig.quaternion import UP, leaning
@@ -112,8 +112,7 @@ def glances_at(plan: Plan, body: Trajectory, times: Array, context: Context) -> 
 
 def _notes(plan: Plan) -> Array:
     """Return the seconds at which feet land."""
-    lands = (m.land for track in plan.feet for m in track.moves if isinstance(m, Swing) and not isinstance(m, Walk))
-    return np.unique(np.round(np.fromiter(lands, dtype=np.float64), 3))
+    return np.unique(np.round([swing.land for swing in plan.swings], 3))
 
 
 def _calm(notes: Array, start: float, end: float, numbers: GlanceSettings) -> float:
@@ -141,20 +140,20 @@ def _there(times: Array, start: float, end: float, turn: float) -> Array:
 
 # Small movements on top of all others, multiplied in the space of each joint: breath, wrists, glances.
 #
-# Additive layers as in the blog of the project's sources: the main rotation first, then the layer. They change no joint
-# between the root and a foot, so no contact moves. They are off while a palm is on the floor.
+# Additive layers as in P. Massoudi's blog on character animation, 2013: the main rotation first, then the layer. They
+# change no joint between the root and a foot, so no contact moves. They are off while a palm is on the floor.
 
 
 @dataclass(frozen=True, slots=True)
 class Activity:
     """The activity of the dancer at f times, for the layers.
 
-    stepping : (f,) -1 to 1, positive while the left foot is in the air, negative while the right foot is
+    lift_side : (f,) -1 to 1, positive while the left foot is in the air, negative while the right foot is
     free : (f,) 0 while a palm is on the floor or the bar, else 1; lead : as in `Plan`
     relief : (f,) as in `face.Mood`: a deep breath; beat : (f,) as in `Trajectory`; waiting, glances : at the same times
     """
 
-    stepping: Array
+    lift_side: Array
     free: Array
     lead: int
     relief: Array
@@ -167,7 +166,7 @@ def add_layers(poses: Poses, times: Array, doing: Activity, context: Context) ->
     """Add all layers to the poses at `times` (f,), seconds, in place."""
     skeleton, settings, rotations = context.skeleton, context.settings.layers, poses.rotations
     groove, beat = context.settings.groove, doing.beat
-    stepping, free, lead = doing.stepping, doing.free, doing.lead
+    lift_side, free, lead = doing.lift_side, doing.free, doing.lead
     times = times + context.phase
     breath = np.sin(2 * np.pi * times / settings.breath_time) * (1.0 + settings.breath_deep * doing.relief)
     raised = (np.radians(settings.breath_shoulders) * breath - np.radians(groove.shrug) * beat) * free
@@ -188,7 +187,7 @@ def add_layers(poses: Poses, times: Array, doing: Activity, context: Context) ->
             (np.radians(settings.wrists) * drop + doing.waiting.flap[:, "lr".index(side)]) * free,
         )
     glance, neck = doing.glances, context.settings.look.neck_share
-    bob = np.radians(settings.head_bob) * stepping * free + doing.waiting.tilt + glance.tilt
+    bob = np.radians(settings.head_bob) * lift_side * free + doing.waiting.tilt + glance.tilt
     _turn(skeleton, rotations, "skullbase", quat.AHEAD, -bob)
     nod = np.radians(settings.breath_nod) * breath + np.radians(groove.nod) * beat
     _turn(skeleton, rotations, "vc4", quat.LEFT, nod)
@@ -238,7 +237,7 @@ class HandUse:
 def hand_use(plan: Plan, body: Trajectory, at: Array, waiting: WaitMotion, context: Context) -> HandUse:
     """Return the use of hands at times `at` (f,); waiting : at the same times."""
     settings, rate = context.settings, 1.0 / float(body.times[1] - body.times[0])
-    effort = lately(tempo_factor(plan, body.times, settings), rate, settings.arms.effort)
+    effort = moving_mean(tempo_factor(plan, body.times, settings), rate, settings.arms.effort)
     return HandUse(
         np.interp(at, body.times, effort),
         sample_path(body.reaching, body.times, at),

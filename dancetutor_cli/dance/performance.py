@@ -91,7 +91,7 @@ class Performance:
         spans = [whole_span(one.plan, one.context) for one in self.dancers]
         return min(start for start, _ in spans), max(end for _, end in spans)
 
-    def motions(self, wanted: Cut | None = None, run: PieceRunner = in_turn) -> list[BakedPiece]:
+    def bake(self, wanted: Cut | None = None, run: PieceRunner = in_turn) -> list[BakedPiece]:
         """Bake the motion of each dancer on her own pad; `place` is the position of that pad.
 
         Parameters

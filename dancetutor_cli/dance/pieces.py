@@ -15,7 +15,7 @@ import numpy as np
 
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.motion import Contact, Distances, Ground, Motion, sample
-from dancetutor_cli.dance.plan import FootTrack, Plan, Walk
+from dancetutor_cli.dance.plan import FootTrack, Plan, WalkStep
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.settings import Span
 from dancetutor_cli.dance.smoothing import smooth
@@ -89,7 +89,7 @@ def in_turn(function: Callable[[Piece], BakedPiece], pieces: Sequence[Piece]) ->
 def whole_span(plan: Plan, context: Context) -> Span:
     """Return the first and last second of a dance. It begins with the song, or earlier, before the first step."""
     walk = context.settings.walk
-    left = max((route.end for route in plan.walks), default=-np.inf) + walk.gone
+    left = max((one.end for one in plan.walks), default=-np.inf) + walk.gone
     return min(0.0, plan.first - walk.lead_in), max(plan.last + walk.lead_out, left)
 
 
@@ -166,7 +166,7 @@ def track_from(track: FootTrack, first: int, moves: Sequence[object]) -> FootTra
     if first == 0:
         return replace(track, moves=kept)  # type: ignore[arg-type]
     before = track.moves[first - 1]
-    level = before.level if isinstance(before, Walk) else 0.0
+    level = before.level if isinstance(before, WalkStep) else 0.0
     return FootTrack(before.target, before.yaw, kept, level)  # type: ignore[arg-type]
 
 

@@ -101,7 +101,7 @@ class Shake(Swing):
 
 
 @dataclass(frozen=True, slots=True)
-class Walk(Swing):
+class WalkStep(Swing):
     """A step of a walk. level : height of the ground at the landing, metres"""
 
     level: float = 0.0
@@ -163,7 +163,7 @@ class Press:
 
 
 @dataclass(frozen=True, slots=True)
-class Route:
+class Walk:
     """A walk from `start` to `end`, seconds, with the landings in between. The first landing is by foot `first`.
 
     gait : "flat" or "heels"; share : 0 to 1, how much of the quick form of the gait the walk has
@@ -201,7 +201,7 @@ class Plan:
     first: float
     last: float
     grips: tuple[Grip, ...] = ()
-    walks: tuple[Route, ...] = ()
+    walks: tuple[Walk, ...] = ()
     lead: int = 0
     dropped: tuple[DroppedNote, ...] = ()
 
@@ -219,6 +219,12 @@ class Plan:
         Random choices (to sway left or right) are multiplied by it, so that a mirrored play is danced mirrored.
         """
         return 1.0 - 2.0 * self.lead
+
+    @property
+    def swings(self) -> tuple[Swing, ...]:
+        """All swings of the left foot, then of the right one, without the steps of walks."""
+        moves = (move for track in self.feet for move in track.moves)
+        return tuple(move for move in moves if isinstance(move, Swing) and not isinstance(move, WalkStep))
 
     @property
     def contacts(self) -> tuple[Contact, ...]:

@@ -159,21 +159,21 @@ class ConvergenceError(DancetutorError):
 
 
 def solve_surely(problem: BandedLeastSquares, limits: list[Limits], what: str) -> Solution:
-    """Solve as `solve` does, but return a minimum in any case: if the first try does not converge, try softer limits.
+    """Minimise in any case: if the first try does not converge, try again with softer limits.
 
     what : name of the wanted path, for the user. Raises ConvergenceError if the second try does not converge either
     """
-    found = solve(problem, limits)
+    found = minimise(problem, limits)
     if found.is_feasible:
         return found
     softer = [replace(part, give=max(SOFTER * part.give, SOFT)) for part in limits]
-    found = solve(problem, softer, MORE_ROUNDS)
+    found = minimise(problem, softer, MORE_ROUNDS)
     if not (found.is_feasible and np.isfinite(found.x).all()):
         raise ConvergenceError(f"{what} was not found in {found.rounds} rounds; choose another part with --section")
     return replace(found, softened=True)
 
 
-def solve(problem: BandedLeastSquares, limits: list[Limits], most: int | None = None) -> Solution:
+def minimise(problem: BandedLeastSquares, limits: list[Limits], most: int | None = None) -> Solution:
     """Return the least sum of a problem of width 1 within limits. Scale limits so that 1 is a usual value.
 
         minimise over x, e     1/2 x^T B x - r^T x + sum_i e_i^2 / (2 give_i)

@@ -2,7 +2,8 @@
 
 Each round bakes roughly, measures three things and plans the path again: where the centre of mass is over the root, how
 far pinned palms pulled it down, and which ankles bend too far. Without palms two rounds are enough; the rest is
-corrected frame by frame (`dance.bake`).
+corrected frame by frame (`dance.bake`). With palms there are three, because how the body bends at the depth to which
+they pull it is not known before the first: the round in the middle plans only the height anew.
 """
 
 from __future__ import annotations
@@ -15,8 +16,8 @@ import numpy as np
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.foot_path import Feet, both_feet
 from dancetutor_cli.dance.ik.ankles import giving_knees
-from dancetutor_cli.dance.ik.full_body import Targets, solve
-from dancetutor_cli.dance.ik.targets import ik_targets
+from dancetutor_cli.dance.ik.full_body import Targets, solve_poses
+from dancetutor_cli.dance.ik.targets import FreeHands, ik_targets
 from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import SIDES, centre_of_mass, world_transforms
@@ -24,7 +25,7 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import cubic, sample_path, smooth, smooth_path, upper_envelope
 from dancetutor_cli.dance.trajectory.legs import push_off, raised
 from dancetutor_cli.dance.trajectory.momentum import rotation_zmp_offset
-from dancetutor_cli.dance.trajectory.posture import RoughBake, Trajectory, body_trajectory
+from dancetutor_cli.dance.trajectory.posture import RoughBake, Trajectory, bake_at_rest, body_trajectory
 from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.dance.waits import waiting_at
 from dancetutor_cli.feet.limbs import Limb, Part
@@ -32,6 +33,7 @@ from dancetutor_cli.feet.limbs import Limb, Part
 SETTLE_ROUNDS, ROUNDS_WITH_PALMS = 2, 3  # rounds of rough baking until the path of the body is final
 TIGHTENED = 3  # rounds of tightening the limits of balance in the last of these rounds
 COARSE = 4  # a round bakes only one of this many samples of the path
+XZY = [0, 2, 1]  # columns of a place in the order of a path over the ground (x, z) and its height (y)
 OFFSET_SMOOTH = 0.010  # seconds over which the path of the centre of mass from the pelvis is smoothed
 GIVES_SPAN = 0.12  # seconds in which a knee turns to keep its ankle within limits
 AROUND_PRESS = 0.05  # seconds around a press in which its palm may pull the root
@@ -56,19 +58,19 @@ class SettledTrajectory:
 def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> SettledTrajectory:
     """Bake roughly, measure the pose, and plan the path again; times (n,) are even, and `feet` is sampled there."""
     settings, rate = context.settings, context.settings.sampling.work_rate
-    body = body_trajectory(plan, times, feet, context)
+    body = body_trajectory(plan, times, feet, context, bake_at_rest(plan, times, context))
     coarse, ones = times[::COARSE], np.ones(len(times))
     deeper, heels, knees = np.zeros(len(plan.presses)), np.zeros((len(times), 2)), np.zeros((len(times), 2))
     may_rise, residuals = heels_may_rise(plan, times, settings.step.press_time), []
     rounds = ROUNDS_WITH_PALMS if plan.presses else SETTLE_ROUNDS
     for number in range(rounds):
         targets = targets_at(plan, body, (coarse, both_feet(plan.feet, coarse, settings)), context)
-        poses = solve(context.skeleton, targets, settings.body.reach)
+        poses = solve_poses(context.skeleton, targets, settings.body.reach)
         placed = world_transforms(context.skeleton, poses.rotations, poses.root)
         offset = centre_of_mass(context.skeleton, *placed) - poses.root
         taken = sample_path(np.column_stack((body.mass, body.mass_height.at(times))), times, coarse)
         planned = taken - sample_path(np.column_stack((body.ground, body.height)), times, coarse)
-        residuals.append(float(np.abs(offset[:, [0, 2, 1]] - planned).max()))
+        residuals.append(float(np.abs(offset[:, XZY] - planned).max()))
         above = smooth_path(cubic(coarse, offset, times), ones, rate, OFFSET_SMOOTH)
         deeper = _deeper(plan, deeper, coarse, poses.root[:, 1] - targets.pelvis[:, 1], context)
         heels += np.column_stack([np.interp(times, coarse, h) for h in _heels_up(poses.rotations, context)])
@@ -79,13 +81,13 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> SettledTra
         hips = cubic(coarse, hips_of(context.skeleton, poses).reshape(-1, 6), times).reshape(-1, 2, 3)
         root = np.column_stack((body.ground[:, 0], body.height, body.ground[:, 1]))
         push = push_off(plan, times, raised(feet, heels), root[:, None] + hips, context) * may_rise
-        last = number == rounds - 1
         turning = rotation_zmp_offset(context.skeleton, *placed, rate / COARSE)
-        known = RoughBake(
-            body, above, cubic(coarse, turning, times), hips, push, deeper, keep=number > 0 and not last,
-            tightened=TIGHTENED if last else 0,
-        )  # fmt: skip
-        body = replace(body_trajectory(plan, times, feet, context, known), heels=heels + push, knees=knees)
+        rough = RoughBake(body, above, cubic(coarse, turning, times), hips, push, deeper)
+        if number == rounds - 1:
+            rough = replace(rough, tightened=TIGHTENED)
+        elif number > 0:  # a round in between is for palms: it changes the height, and not the path over the ground
+            rough = replace(rough, keep=True)
+        body = replace(body_trajectory(plan, times, feet, context, rough), heels=heels + push, knees=knees)
     return SettledTrajectory(body, tuple(residuals))
 
 
@@ -98,11 +100,16 @@ def _around(coarse: Array, gives: Array, times: Array) -> Array:
     return out
 
 
-def targets_at(plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Context) -> Targets:
-    """Return the IK's targets at times (f,) at which feet are sampled, heels raised as the trajectory demands."""
+def targets_at(
+    plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Context, free: FreeHands | None = None
+) -> Targets:
+    """Return the IK's targets at times (f,) at which feet are sampled, heels raised as the trajectory demands.
+
+    free : as for `ik_targets`
+    """
     at, feet = sampled
     up = sample_path(body.heels, body.times, at) + waiting_at(plan, at, context).heels
-    return ik_targets(plan, body, raised(feet, up), at, context)
+    return ik_targets(plan, body, raised(feet, up), at, context, free)
 
 
 def hips_of(skeleton: Skeleton, poses: Poses) -> Array:

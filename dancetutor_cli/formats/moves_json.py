@@ -43,7 +43,7 @@ from dancetutor_cli.dance.plan import (
     Sidestep,
     Step,
     Swing,
-    Walk,
+    WalkStep,
 )
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.play import StepKind
@@ -54,7 +54,7 @@ _FEET = ("left_foot", "right_foot")
 
 
 KINDS: dict[type[Move], str] = {  # names of moves in the file
-    Step: "step", Jump: "jump", Gallop: "gallop", Hover: "evade", Pivot: "pivot", Sidestep: "aside", Walk: "walk",
+    Step: "step", Jump: "jump", Gallop: "gallop", Hover: "evade", Pivot: "pivot", Sidestep: "aside", WalkStep: "walk",
     Shake: "shake",
 }  # fmt: skip
 
@@ -155,7 +155,7 @@ def _grip(bar: Bar, grip: Grip) -> dict[str, Any]:
 def _foot_moves(track: FootTrack, limb: str) -> list[dict[str, Any]]:
     out, place = [], track.start
     for move in track.moves:
-        level = move.level if isinstance(move, Walk) else 0.0
+        level = move.level if isinstance(move, WalkStep) else 0.0
         tuck = move.tuck if isinstance(move, Jump) else 0.0
         out.append(
             {

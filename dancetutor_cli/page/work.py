@@ -165,7 +165,7 @@ def _motions(request: PageRequest, solved: tuple[Solved, ...]) -> list[Motion]:
     """Return the motion of each dancer at her place on the common pad, without walks onto the pad or off it."""
     performance = perform(solved, request.dance)
     whole = Cut(*performance.span, walks_on=False, walks_off=False)
-    done = performance.motions(whole, run=piece_runner(request.jobs))
+    done = performance.bake(whole, run=piece_runner(request.jobs))
     return [shifted(one.motion, *who.place) for one, who in zip(done, performance.dancers, strict=True)]
 
 

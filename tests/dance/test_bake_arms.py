@@ -122,7 +122,7 @@ def test_the_hand_of_the_higher_shoulder_goes_outward(side: int) -> None:
 def test_both_arms_are_not_held_aside_like_wings(index: int) -> None:
     """Wrists 22 cm outside their shoulders, both at once: rarely in a whole chart, and never for long."""
     request = DanceRequest(charts_path() / "two_left_feet" / "two_left_feet.ssc", Selection(index=index))
-    motion = perform(solve(request), request).motions()[0].motion
+    motion = perform(solve(request), request).bake()[0].motion
     at = np.arange(motion.times[0], motion.times[-1], 1 / 30)
     places, _ = world_transforms(motion.skeleton, *sample(motion, at))
     joint = motion.skeleton.index
@@ -170,7 +170,7 @@ def test_upper_arms_are_seldom_far_behind_the_trunk() -> None:
     song = charts_path() / "two_left_feet" / "two_left_feet.ssc"
     for index in (1, 2, 3):
         request = DanceRequest(song, Selection(index=index))
-        motion = perform(solve(request), request).motions()[0].motion
+        motion = perform(solve(request), request).bake()[0].motion
         places, _ = world_transforms(motion.skeleton, *sample(motion, np.arange(4.0, 36.0, 0.05)))
         joint = {name: places[:, motion.skeleton.index(name)] for name in motion.skeleton.names}
         across = joint["l_shoulder"] - joint["r_shoulder"]

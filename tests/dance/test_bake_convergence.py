@@ -49,7 +49,7 @@ def _as_list(pair: tuple[BandedLeastSquares, Limits]) -> tuple[BandedLeastSquare
 
 def test_a_bake_says_what_gave_way_and_is_still_a_motion(monkeypatch: pytest.MonkeyPatch) -> None:
     given_up: list[int] = []
-    real = quadratic.solve
+    real = quadratic.minimise
 
     def once(problem: BandedLeastSquares, limits: list[Limits], most: int | None = None) -> Solution:
         """The method as if it needed more rounds than it has, but for the second try."""
@@ -57,7 +57,7 @@ def test_a_bake_says_what_gave_way_and_is_still_a_motion(monkeypatch: pytest.Mon
         found = real(problem, limits, most)
         return found if most else replace(found, is_feasible=False, x=np.full_like(found.x, np.nan))
 
-    monkeypatch.setattr(quadratic, "solve", once)
+    monkeypatch.setattr(quadratic, "minimise", once)
     plan, context = plan_dance(chart().timing, play(MEDLEY), pad())
     motion = bake_plan(plan, context, 60.0, (3.0, 6.0))
     assert [note.split(" no path of ")[1].split(" keeps")[0] for note in motion.notes] == [

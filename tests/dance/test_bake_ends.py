@@ -46,8 +46,8 @@ def performance(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPat
 @pytest.fixture(scope="module")
 def shown(performance: Performance) -> dict[Cut, Motion]:
     """Each cut, and the whole dance."""
-    cuts = {cut: performance.motions(replace(cut, walks_off=False))[0].motion for cut in (COUNTED, RESTS, FILM)}
-    return {**cuts, WHOLE: performance.motions()[0].motion}
+    cuts = {cut: performance.bake(replace(cut, walks_off=False))[0].motion for cut in (COUNTED, RESTS, FILM)}
+    return {**cuts, WHOLE: performance.bake()[0].motion}
 
 
 def steps(motion: Motion) -> list[tuple[float, int, int]]:
@@ -104,7 +104,7 @@ def test_in_the_end_she_stands_at_home(shown: dict[Cut, Motion], cut: Cut) -> No
 
 
 def test_where_there_is_no_time_she_stays(performance: Performance, shown: dict[Cut, Motion]) -> None:
-    (one,) = performance.motions(Cut(START, END + 0.9, steps_until=END, walks_off=False))
+    (one,) = performance.bake(Cut(START, END + 0.9, steps_until=END, walks_off=False))
     assert feet_moved(one.motion, END + 0.35, END + 0.9) < 0.003
 
 
@@ -119,14 +119,14 @@ def test_where_nobody_has_stepped_yet_the_dance_itself_begins(
     whole = shown[WHOLE]
     assert whole.contacts[0].start == 0.0
     early = Cut(float(whole.times[0]), END, steps_from=0.0)
-    (one,) = performance.motions(replace(early, walks_off=False))
+    (one,) = performance.bake(replace(early, walks_off=False))
     assert apart(one.motion, whole, early.start, END) == 0.0
 
 
 @pytest.mark.parametrize("end", [17.81, 27.54])
 def test_a_foot_that_was_on_its_way_does_not_slide_back(end: float) -> None:
     wanted = DanceRequest(charts_path() / "two_left_feet" / "two_left_feet.ssc", Selection(index=2))
-    (one,) = perform(solve(wanted), wanted).motions(Cut(end - 4.0, end + 1.5, steps_until=end, walks_off=False))
+    (one,) = perform(solve(wanted), wanted).bake(Cut(end - 4.0, end + 1.5, steps_until=end, walks_off=False))
     assert report(one.motion)["plant slide"].is_met, report(one.motion)["plant slide"]
 
 
@@ -139,8 +139,8 @@ def test_a_film_that_ends_before_the_first_step_or_begins_before_the_music(
     path.write_text(f"#TITLE:T;#OFFSET:{offset};#BPMS:0=120;#NOTES:dance-single::Easy:3::0000\n0000\n1000\n0001,1000;")
     wanted = DanceRequest(path, Selection())
     performance = perform(solve(wanted), wanted)
-    (film,) = performance.motions(Cut(0.0, end + 1.5, steps_until=end, walks_off=False))
-    (whole,) = performance.motions()
+    (film,) = performance.bake(Cut(0.0, end + 1.5, steps_until=end, walks_off=False))
+    (whole,) = performance.bake()
     assert np.isfinite(film.motion.rotations).all() and np.isfinite(whole.motion.rotations).all()
     assert len(whole.motion.contacts) == 3
 
@@ -151,9 +151,9 @@ def test_where_nobody_is_seen_to_walk_the_dance_is_the_same(tmp_path: Path) -> N
     path.write_text(HEAD + ",\n".join(["0000\n"] * 5 + [MEASURES["a stream"]] * 4 + ["0000\n"] * 4) + ";\n")
     wanted = DanceRequest(path, Selection())
     performance = perform(solve(wanted), wanted)
-    (whole,), (first, last) = performance.motions(), (10.0, 17.75)
+    (whole,), (first, last) = performance.bake(), (10.0, 17.75)
     assert max(walk.end for walk in performance.dancers[0].plan.walks if walk.end <= first) > 0.0, "she walks on"
-    (stays,) = performance.motions(Cut(*performance.span, walks_on=False, walks_off=False))
+    (stays,) = performance.bake(Cut(*performance.span, walks_on=False, walks_off=False))
     far = np.abs(stays.motion.root[:, [0, 2]]).max(axis=1)
     assert far.max() < 0.45 < np.abs(whole.motion.root[:, [0, 2]]).max()
     walks = performance.dancers[0].plan.walks

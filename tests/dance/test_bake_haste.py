@@ -11,7 +11,7 @@ from bake_plays import Event, L, R, chart, pad, plan_of, play, stream
 
 from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.plan import LEAST_FLIGHT, Gallop, Step
-from dancetutor_cli.dance.quality.contact import plant_slides
+from dancetutor_cli.dance.quality.contact import longest_slide
 from dancetutor_cli.dance.quality.dynamics import balance_figures
 from dancetutor_cli.dance.quality.figures import Body, body_of
 from dancetutor_cli.dance.quality.posture import jerk, jump_knees, knee_angles
@@ -62,7 +62,7 @@ def test_quick_feet_that_go_at_one_speed_throw_the_body_less() -> None:
         body = body_of(motion)
         rough.append(float(jerk(body.joints[:, 0], body.rate).mean()))
         kept.append(balance_figures(body)[0].value)
-        assert plant_slides(body, motion.skeleton)[0] < 0.001
+        assert longest_slide(body, motion.skeleton)[0] < 0.001
     assert rough[0] < 0.9 * rough[1]
     assert kept[0] >= 98.0
 
@@ -102,5 +102,5 @@ def test_a_pivot_whose_ball_slides_is_a_slide(drift: float) -> None:
     soles[..., 0] += way[:, None, None]
     joints[..., 0] += way[:, None]
     spoilt = Body(60.0, np.arange(count) / 60.0, joints, soles, body.mass[:count], body.rotations, body.head)
-    slide, pivots = plant_slides(spoilt, motion.skeleton)
+    slide, pivots = longest_slide(spoilt, motion.skeleton)
     assert pivots == 1 and slide == pytest.approx(drift, abs=1e-9)

@@ -38,7 +38,7 @@ def danced(folder: Path, kind: str, rows: list[str]) -> Performance:
 def pair(tmp_path_factory: pytest.TempPathFactory) -> list[Motion]:
     """Both dance the same notes."""
     both = danced(tmp_path_factory.mktemp("pair"), "couple", [row + row for row in OWN])
-    return [one.motion for one in both.motions()]
+    return [one.motion for one in both.bake()]
 
 
 def in_chest(motion: Motion, times: np.ndarray) -> np.ndarray:
@@ -98,8 +98,8 @@ def test_in_the_mirror_image_of_a_chart_each_stays_who_she_was(tmp_path: Path) -
     pairs = [danced(tmp_path, "couple", rows), danced(tmp_path / "a", "couple", image)]
     assert [one.context.person for one in pairs[0].dancers] == [0, 1]
     assert [one.context.person for one in pairs[1].dancers] == [1, 0]
-    mine = in_chest(pairs[0].motions()[1].motion, EVEN)
-    theirs = in_chest(pairs[1].motions()[0].motion, EVEN)
+    mine = in_chest(pairs[0].bake()[1].motion, EVEN)
+    theirs = in_chest(pairs[1].bake()[0].motion, EVEN)
     swapped = theirs[:, [3, 4, 5, 0, 1, 2]] * [-1.0, 1.0, 1.0, -1.0, 1.0, 1.0]
     assert np.abs(mine - swapped).max() < 0.002
 
@@ -107,7 +107,7 @@ def test_in_the_mirror_image_of_a_chart_each_stays_who_she_was(tmp_path: Path) -
 def test_two_who_are_each_others_mirror_image_are_two_people_all_the_same(tmp_path: Path) -> None:
     both = danced(tmp_path, "couple", [row + _mirrored(row) for row in OWN])
     assert sorted(one.context.person for one in both.dancers) == [0, 1]
-    one, other = (in_chest(done.motion, EVEN) for done in both.motions())
+    one, other = (in_chest(done.motion, EVEN) for done in both.bake())
     swapped = other[:, [3, 4, 5, 0, 1, 2]] * [-1.0, 1.0, 1.0, -1.0, 1.0, 1.0]
     assert np.median(np.abs(one - swapped)) > 0.01
 

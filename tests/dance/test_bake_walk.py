@@ -9,9 +9,9 @@ from bake_plays import L, R, chart, context, pad, plan_of, play, stream
 from dancetutor_cli.chart.reader import load
 from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.footwork.walks import side_of
-from dancetutor_cli.dance.gait import blended, blended_pose, gait_pose, load_gait, walking
+from dancetutor_cli.dance.gait import blended, blended_pose, gait_pose, load_gait, walk_pose
 from dancetutor_cli.dance.motion import Motion, sample
-from dancetutor_cli.dance.plan import Walk
+from dancetutor_cli.dance.plan import WalkStep
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import points_in_world, sole_points, world_transforms
@@ -110,7 +110,7 @@ def test_a_walk_goes_through_its_cycle_at_an_even_pace() -> None:
     at = np.arange(walk.start + WALK.fade, walk.end - WALK.fade, 0.01)
     phase = (1.0 if walk.first == 0 else 0.5) + (at - walk.landings[0]) / period
     wanted = blended_pose(load_gait("flat"), walk.share, phase, WALK)
-    seen = walking((walk,), at, WALK)
+    seen = walk_pose((walk,), at, WALK)
     assert seen is not None and (at < walk.landings[0]).any()
     np.testing.assert_allclose(seen.hands, wanted.hands, atol=1e-9)
     np.testing.assert_allclose(seen.roll, wanted.roll, atol=1e-9)
@@ -152,7 +152,7 @@ def test_hands_swing_before_and_behind_against_the_feet(walked: Motion) -> None:
 def test_heels_sway_more_swing_wider_and_step_as_far() -> None:
     flat, heels = (bake(chart().timing, play(EVENTS), pad(), gait=g) for g in ("flat", "heels"))
     plans = [plan_of(chart().timing, play(EVENTS), pad(), gait=g) for g in ("flat", "heels")]
-    steps = [[s.target for s in plan.feet[0].moves if isinstance(s, Walk)] for plan in plans]
+    steps = [[s.target for s in plan.feet[0].moves if isinstance(s, WalkStep)] for plan in plans]
     np.testing.assert_allclose(steps[0], steps[1])
     at = np.arange(0.6, 1.9, 0.02)
 

@@ -54,18 +54,18 @@ def same_keys(part: Motion, whole: Motion, start: float, end: float) -> None:
 @pytest.mark.parametrize("how", [{}, {"bar": True}, {"style": "lazy"}], ids=["alone", "bar", "style"])
 def test_every_cut_shows_the_whole_dance(short: None, tmp_path: Path, how: dict[str, object]) -> None:
     performance = of_a_stream(tmp_path, **how)
-    (whole,), (start, end) = performance.motions(), performance.span
+    (whole,), (start, end) = performance.bake(), performance.span
     ends = pieces.piece_ends(performance.dancers[0].plan, start, end)
     assert len(ends) > 3
     for first, last in ((4.3, 5.7), (ends[1] - 1.0, ends[1] + 1.0), (ends[2] - 0.4, ends[2] - 0.1), (end - 2.0, end)):
-        (part,) = performance.motions(Cut(first, last))
+        (part,) = performance.bake(Cut(first, last))
         same_keys(part.motion, whole.motion, first, last)
 
 
 def test_a_cut_beyond_the_dance_has_no_keys_there(short: None, tmp_path: Path) -> None:
     performance = of_a_stream(tmp_path)
     _, end = performance.span
-    (part,) = performance.motions(Cut(end - 2.0, end + 60.0))
+    (part,) = performance.bake(Cut(end - 2.0, end + 60.0))
     assert end - 1 / 30 <= part.motion.times[-1] <= end and part.motion.times[0] >= end - 2.0
 
 
@@ -138,5 +138,5 @@ def test_a_push_beside_a_seam_is_reported_once(short: None, tmp_path: Path) -> N
     performance = of_a_stream(tmp_path)
     seam = pieces.piece_ends(performance.dancers[0].plan, *performance.span)[2]
     pushed = of_a_stream(tmp_path, style="neutral", push=(f"{seam - 0.275}:300:left",))
-    (part,) = pushed.motions(Cut(seam - 2.0, seam + 2.0))
+    (part,) = pushed.bake(Cut(seam - 2.0, seam + 2.0))
     assert len(part.motion.notes) == 1, part.motion.notes

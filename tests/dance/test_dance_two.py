@@ -77,7 +77,7 @@ def sides(performance: Performance) -> tuple[tuple[int, int] | None, ...]:
 def test_no_limb_of_one_is_ever_in_the_other(couple: Performance) -> None:
     """From the walk on to the walk off, and while both stand on their inner panels."""
     assert sides(couple) == ((0, 0), (1, 1))
-    pairs = zip(couple.motions(), couple.dancers, strict=True)
+    pairs = zip(couple.bake(), couple.dancers, strict=True)
     motions = [shifted(one.motion, *dancer.place) for one, dancer in pairs]
     assert nearest(motions).max() < 0.0
     for motion, outward in zip(motions, (1.0, -1.0), strict=True):  # the first player's pad is on the left, +x

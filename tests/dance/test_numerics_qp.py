@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from dancetutor_cli.dance.quadratic import BandedLeastSquares, Limits, differences, solve
+from dancetutor_cli.dance.quadratic import BandedLeastSquares, Limits, differences, minimise
 
 
 def path_problem(target: np.ndarray, stiffness: float) -> BandedLeastSquares:
@@ -29,7 +29,7 @@ def test_agrees_with_a_general_solver(seed: int) -> None:
     target = np.cumsum(rng.normal(size=n))
     box = Limits(np.arange(n), np.ones((n, 1)), np.full(n, -1.0), np.full(n, 1.5))
     bend = Limits(np.arange(n - 2), np.tile(differences(2), (n - 2, 1)), np.full(n - 2, -0.4), np.full(n - 2, 0.4))
-    found = solve(path_problem(target, 2.0), [box, bend])
+    found = minimise(path_problem(target, 2.0), [box, bend])
     assert found.is_feasible
     second = np.array([np.convolve(np.eye(n)[i], differences(2)[::-1], "valid") for i in range(n)]).T
     constraints = [{"type": "ineq", "fun": lambda x, s=s: 0.4 - s * (second @ x)} for s in (1, -1)]
@@ -45,12 +45,12 @@ def test_loose_limits_change_nothing() -> None:
     target = np.sin(np.arange(40) / 4)
     free = path_problem(target, 5.0).solve()[:, 0]
     box = Limits(np.arange(40), np.ones((40, 1)), np.full(40, -9.0), np.full(40, np.inf))
-    np.testing.assert_allclose(solve(path_problem(target, 5.0), [box]).x, free, atol=1e-5)
+    np.testing.assert_allclose(minimise(path_problem(target, 5.0), [box]).x, free, atol=1e-5)
 
 
 def test_limits_that_contradict_are_reported() -> None:
     box = Limits(np.arange(9), np.ones((9, 1)), np.full(9, 1.0), np.full(9, 0.0))
-    assert not solve(path_problem(np.zeros(9), 1.0), [box]).is_feasible
+    assert not minimise(path_problem(np.zeros(9), 1.0), [box]).is_feasible
 
 
 def test_limits_that_give_way_cost_what_they_say() -> None:
@@ -58,7 +58,7 @@ def test_limits_that_give_way_cost_what_they_say() -> None:
     n, give = 9, 0.05
     target = np.linspace(-0.5, 1.5, n)
     box = Limits(np.arange(n), np.ones((n, 1)), np.full(n, 1.0), np.full(n, 0.0), give)
-    found = solve(path_problem(target, 0.7), [box])
+    found = minimise(path_problem(target, 0.7), [box])
     assert found.is_feasible
 
     def whole(x: np.ndarray) -> float:
@@ -81,7 +81,7 @@ def test_two_coordinates_by_turns_agree_with_a_general_solver() -> None:
         problem.add(2 * np.arange(n) + axis, np.ones((n, 1)), np.ones(n), target[:, axis, None])
         problem.add(2 * np.arange(n - 3) + axis, jerk, np.ones(n - 3), np.zeros((n - 3, 1)))
     aslant = Limits(2 * np.arange(n), np.full((n, 2), 0.5**0.5), np.full(n, -0.8), np.full(n, 0.6))
-    found = solve(problem, [aslant])
+    found = minimise(problem, [aslant])
     assert found.is_feasible
 
     def whole(x: np.ndarray) -> float:

@@ -125,7 +125,7 @@ def test_every_label_that_the_modules_use_exists() -> None:
 
 def test_a_second_dancer_has_the_motion_of_a_file(page: Page, tmp_path: Path) -> None:
     request = DanceRequest(write_song(tmp_path), Selection(), "thesis", fps=30.0)
-    [own] = perform(solve(request), request).motions()
+    [own] = perform(solve(request), request).bake()
     other = replace(own.motion.contacts[0], limb=1 - own.motion.contacts[0].limb)
     later = replace(own.motion, times=own.motion.times + 1.0, contacts=(other, *own.motion.contacts[1:]))
     write_npz(tmp_path / "captured.npz", later)

@@ -12,11 +12,11 @@ from dancetutor_cli.dance.footwork.foothold import (
     Heel,
     Pitches,
     Pose,
-    around,
     heel_up,
     is_touching,
     pose,
     resolve_overlap,
+    swing_detour,
 )
 from dancetutor_cli.dance.footwork.footing import Footing, FootState, Proposal, Row, TakeOff, pair
 from dancetutor_cli.dance.plan import STRAIGHT, Bulge, Jump
@@ -103,7 +103,7 @@ def _first(row: Row, footing: Footing, take_off: float, goals: Goals) -> tuple[f
     foot, (target, yaw) = feet[side], goals[side]
     out = [take_off, take_off]
     early = max(foot.earliest(time), time - row.duration * (1.0 - step.double_support_fast))
-    straight = around(footing, foot, (early, time), target, yaw, feet[1 - side]) == STRAIGHT
+    straight = swing_detour(footing, foot, (early, time), target, yaw, feet[1 - side]) == STRAIGHT
     if straight and ways[side] > ways[1 - side] + footing.settings.jump.farther:
         out[side] -= row.cut * max(take_off - early, 0.0)
     return out[0], out[1]

@@ -13,7 +13,7 @@ from dancetutor_cli.dance.clearance import Way, bend, detour, gaps_at, lag
 from dancetutor_cli.dance.context import Context, ball_of, middle_of
 from dancetutor_cli.dance.gait import STANCE, Gait, blended, load_gait
 from dancetutor_cli.dance.motion import Ground
-from dancetutor_cli.dance.plan import Bulge, FootTrack, Route, Turn, Walk
+from dancetutor_cli.dance.plan import Bulge, FootTrack, Turn, Walk, WalkStep
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array
@@ -62,11 +62,11 @@ def stand_at(middle: Array, heading: float, settings: MotionSettings) -> Stand:
 
 
 @dataclass(frozen=True, slots=True)
-class WalkSteps:
+class WalkPlan:
     """A walk, ready to be put into a plan. room : least distance between the middle lines of the shoes, metres."""
 
-    walk: Route
-    swings: tuple[tuple[Walk, ...], tuple[Walk, ...]]
+    walk: Walk
+    swings: tuple[tuple[WalkStep, ...], tuple[WalkStep, ...]]
     turns: tuple[Turn, ...]
     room: float
 
@@ -82,7 +82,7 @@ class WalkRequest:
     ready: float
 
 
-def footsteps(request: WalkRequest, gait: str, lead: int, context: Context) -> WalkSteps | None:
+def footsteps(request: WalkRequest, gait: str, lead: int, context: Context) -> WalkPlan | None:
     """Return footsteps from one stand to another, at the slowest pace that arrives in time; None if no pace does.
 
     lead : the foot that goes first if both have the same room
@@ -186,11 +186,11 @@ def shoe_gap(start: tuple[Array, float], step: Footfall, bulge: Bulge, other: tu
     return float(gaps_at(balls, start[1] + share * (step.yaw - start[1]), *other).min())
 
 
-def _as_swings(request: WalkRequest, steps: list[Footfall], first: int, how: Pace, context: Context) -> WalkSteps:
+def _as_swings(request: WalkRequest, steps: list[Footfall], first: int, how: Pace, context: Context) -> WalkPlan:
     begin, pace, ground, walk = request.begin, how.gait, context.ground, context.settings.walk
     push, heel = np.radians((pace.push_pitch, pace.heel_pitch))
     places = [(begin.balls[s], float(begin.yaws[s])) for s in (0, 1)]
-    swings: tuple[list[Walk], list[Walk]] = ([], [])
+    swings: tuple[list[WalkStep], list[WalkStep]] = ([], [])
     turns, landings, before, least = [], [], begin.heading, np.inf
     for k, step in enumerate(steps):
         side = (first + k) % 2
@@ -207,13 +207,13 @@ def _as_swings(request: WalkRequest, steps: list[Footfall], first: int, how: Pac
         edge = abs(level - ground.level(*middle_of(ball, yaw))) > 0.0
         target = (float(step.ball[0]), float(step.ball[1]))
         height = pace.height + walk.over_edge * edge
-        swings[side].append(Walk(lift, land, target, step.yaw, pitches, height, bulge, level))
+        swings[side].append(WalkStep(lift, land, target, step.yaw, pitches, height, bulge, level))
         places[side] = (step.ball, step.yaw)
         turns.append(Turn(lift, land, (before + step.heading) / 2 if k + 1 < len(steps) else step.heading))
         before = step.heading
         landings.append(land)
-    route = Route(request.start, landings[-1], tuple(landings), first, how.share, how.name)
-    return WalkSteps(route, (tuple(swings[0]), tuple(swings[1])), tuple(_joined(turns)), least)
+    whole = Walk(request.start, landings[-1], tuple(landings), first, how.share, how.name)
+    return WalkPlan(whole, (tuple(swings[0]), tuple(swings[1])), tuple(_joined(turns)), least)
 
 
 def _joined(turns: list[Turn]) -> list[Turn]:

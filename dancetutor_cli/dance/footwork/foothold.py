@@ -235,7 +235,7 @@ def is_touching(a: Pose, b: Pose, apart: float) -> bool:
     return bool(gaps_at(a.ball[None], np.array([a.toes]), b.ball, b.toes)[0] < apart)
 
 
-def around(
+def swing_detour(
     footing: Footing, foot: FootState, span: tuple[float, float], target: Array, yaw: float, other: FootState
 ) -> Bulge:
     """Return the sideways detour of a swing, from lift to landing, around the other foot as planned so far."""

@@ -18,9 +18,9 @@ from dancetutor_cli.dance.footwork.walks import (
     places_along,
     sidestep,
     stand_of,
-    stepped,
     waits,
     walks_there,
+    with_sidestep,
 )
 from dancetutor_cli.dance.plan import Bulge, Move, Plan, Press, Shake, Turn, chance_of
 from dancetutor_cli.dance.settings import MotionSettings
@@ -69,7 +69,7 @@ class HomeSteps(StepsInWaits):
             return None
         start = free + pause
         for k, (side, fall) in enumerate(falls):
-            footing = stepped(footing, footing.feet[side], fall, start + k * step, step)
+            footing = with_sidestep(footing, footing.feet[side], fall, start + k * step, step)
         turn = Turn(start, start + len(falls) * step, goal.heading)
         footing = replace(footing, normal=whole, aim=goal.heading, faced=goal.heading, resting=(True, True))
         return Proposal(footing, start, turn)

@@ -13,7 +13,7 @@ import numpy as np
 from dancetutor_cli.dance.clearance import over
 from dancetutor_cli.dance.context import HALF_PANEL, Spot, ball_of, room_on
 from dancetutor_cli.dance.footwork.flights import Flight, flown
-from dancetutor_cli.dance.footwork.foothold import Pitches, around, landing_ball, pose, resolve_overlap
+from dancetutor_cli.dance.footwork.foothold import Pitches, landing_ball, pose, resolve_overlap, swing_detour
 from dancetutor_cli.dance.footwork.footing import (
     FREE_WINDOW,
     SHORTEST_SWING,
@@ -101,7 +101,7 @@ def _lifted(footing: Footing, foot: FootState, time: float, column: int) -> Foot
         return footing
     other = footing.other(foot)
     target, yaw = _place_clear_of_mines(footing, foot, column)
-    bulge = around(footing, foot, (lift, time + half), target, yaw, other)
+    bulge = swing_detour(footing, foot, (lift, time + half), target, yaw, other)
     toes = footing.toes(foot, yaw)
     up = foot.with_move(Hover(lift, time + half, pair(target), toes, _pitches(mines), mines.height, bulge), target, yaw)
     up = replace(up, evading=Evading(first, time, foot.ball, foot.yaw))
@@ -230,7 +230,7 @@ def stayed_up(before: Footing, after: Footing, until: list[float], take_off: flo
     for stood, foot, lift in zip(before.feet, after.feet, until, strict=True):
         if lift < take_off - SHORTEST_SWING:
             jump = foot.moves[-1]
-            bulge = around(before, stood, (lift, jump.land), foot.ball, foot.yaw, after.other(foot))
+            bulge = swing_detour(before, stood, (lift, jump.land), foot.ball, foot.yaw, after.other(foot))
             height = before.settings.mines.height
             up = Hover(lift, jump.land, jump.target, jump.yaw, jump.pitches, height, bulge)
             after = after.with_foot(foot.with_last_move(up))

@@ -9,7 +9,7 @@ import numpy as np
 from dancetutor_cli.dance.clearance import evenness
 from dancetutor_cli.dance.context import HALF_PANEL, PANEL
 from dancetutor_cli.dance.footwork.flights import Goals, galloping, hop, leap, take_off_for, tuck_for
-from dancetutor_cli.dance.footwork.foothold import Goal, Pose, around, heel_of_step, heel_up, landing_place, pose
+from dancetutor_cli.dance.footwork.foothold import Goal, Pose, heel_of_step, heel_up, landing_place, pose, swing_detour
 from dancetutor_cli.dance.footwork.footing import Footing, FootState, Proposal, Row, TakeOff, pair
 from dancetutor_cli.dance.footwork.mines import flown_on, landed_early, resumed, stayed_up, wait_for_other_foot
 from dancetutor_cli.dance.plan import Gallop, Hover, Jump, Step, Swing
@@ -130,7 +130,7 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
     if kind is Jump:  # legs that push off need it
         heel = replace(heel, flat=(footing.settings.jump.lift_flat, footing.settings.jump.swing_flat))
     pitches = heel_up(numbers, row.cut, heel, columns)
-    bulge = around(footing, foot, (lift, time), target, yaw, footing.other(foot))
+    bulge = swing_detour(footing, foot, (lift, time), target, yaw, footing.other(foot))
     height += numbers.height_far * float(np.hypot(bulge.x, bulge.z)) * (kind is Step)
     swing = kind(lift, time, pair(target), footing.toes(foot, yaw), pitches, height, bulge)
     if isinstance(swing, Jump):

@@ -13,14 +13,14 @@ from dancetutor_cli.dance.context import HALF_PANEL, Context
 from dancetutor_cli.dance.footwork.footfalls import (
     Footfall,
     Stand,
+    WalkPlan,
     WalkRequest,
-    WalkSteps,
     current_stand,
     footsteps,
     shoe_gap,
     stand_at,
 )
-from dancetutor_cli.dance.footwork.foothold import around, heel_of_step, heel_up
+from dancetutor_cli.dance.footwork.foothold import heel_of_step, heel_up, swing_detour
 from dancetutor_cli.dance.footwork.footing import Footing, FootState, Proposal, Row, pair
 from dancetutor_cli.dance.motion import Ground
 from dancetutor_cli.dance.plan import STRAIGHT, Bulge, FootTrack, Hover, Plan, Press, Sidestep, Swing, Turn
@@ -43,7 +43,7 @@ class WalkProposal:
     goal : the stand after it; begin : the stand before it, if the plan begins with it
     """
 
-    steps: WalkSteps
+    steps: WalkPlan
     goal: Stand
     begin: Stand | None = None
 
@@ -251,7 +251,7 @@ class SideSteps(StepsInWaits):
             return None
         falls, duration = found
         for k, (side, fall) in enumerate(falls):
-            footing = stepped(footing, footing.feet[side], fall, start + k * duration, duration)
+            footing = with_sidestep(footing, footing.feet[side], fall, start + k * duration, duration)
         turn = Turn(start, start + min(2, len(falls)) * duration, float(np.radians(whole)))
         return Proposal(replace(footing, normal=whole, aim=turn.yaw, faced=turn.yaw), start, turn)
 
@@ -329,11 +329,11 @@ def walks_there(begin: Stand, targets: Array, wait: tuple[float, float], footing
     return walk_there(begin, targets, (wait[0], ready), "flat", footing.lead, footing.context) is not None
 
 
-def stepped(footing: Footing, foot: FootState, fall: Footfall, start: float, duration: float) -> Footing:
+def with_sidestep(footing: Footing, foot: FootState, fall: Footfall, start: float, duration: float) -> Footing:
     """Return the footing in which a foot has stepped aside."""
     step = footing.settings.step
     lift = max(start + step.double_support * duration, foot.free)
-    bulge = around(footing, foot, (lift, start + duration), fall.ball, fall.heading, footing.other(foot))
+    bulge = swing_detour(footing, foot, (lift, start + duration), fall.ball, fall.heading, footing.other(foot))
     aside = sidestep((lift, start + duration, duration), fall, bulge, step)
     return footing.with_foot(replace(foot.with_move(aside, fall.ball, fall.heading), evading=None))
 

@@ -53,7 +53,7 @@ VL5, VT10, VT4, LEG, ARM = (NAMES.index(n) for n in ("vl5", "vt10", "vt4", "l_hi
 class Rig(NamedTuple):
     """The data of a skeleton for the kernels: offsets (j, 3), indices of `NAMES`, axes (2, 3) of the elbows.
 
-    arm : length of the arm; reach, follow : as in `solve`
+    arm : length of the arm; reach, follow : as in `solve_poses`
     """
 
     offsets: Array
@@ -336,7 +336,7 @@ class Targets:
     pull: Array | None = None
 
 
-def solve(skeleton: Skeleton, targets: Targets, reach: float, follow: float = 0.4) -> Poses:
+def solve_poses(skeleton: Skeleton, targets: Targets, reach: float, follow: float = 0.4) -> Poses:
     """Solve all frames, each on its own.
 
     Root: moved until |ankle - hip| <= reach for both legs, by projections onto the two balls in turn. Torso: FABRIK

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dancetutor_cli.dance.context import Context, around, grip_share
+from dancetutor_cli.dance.context import Context, grip_share, grip_slice
 from dancetutor_cli.dance.ik.knees import Legs
 from dancetutor_cli.dance.motion import Bar, Grip
 from dancetutor_cli.dance.rig import quaternion as quat
@@ -114,14 +114,14 @@ FIRST, LAST = 0.4, 2  # begin and end of this push on the way to the rail
 PIN = 2  # power of a hand's share in the rail by which it turns onto it: later than the elbow, to spare the wrist
 
 
-def hold(grips: tuple[Grip, ...], at: Array, hands: HandTargets, torso: Torso, context: Context) -> None:
+def lead_hands_to_bar(grips: tuple[Grip, ...], at: Array, hands: HandTargets, torso: Torso, context: Context) -> None:
     """Lead hands to the bar at times `at` (f,): change their wrists, elbows, rotations and pins in place."""
     bar, settings = context.bar, context.settings.bar
     if bar is None:
         return
     goal, weight, across = np.zeros_like(hands.wrists), np.zeros_like(hands.pinned), np.zeros_like(hands.pinned)
     for grip in grips:
-        near = around(grip, at, settings.reach_time)
+        near = grip_slice(grip, at, settings.reach_time)
         wrist, hand = rest_on_bar(bar, grip.side, grip.x, context.skeleton, settings, grip.across)
         share = grip_share(grip, at[near], settings.reach_time)
         weight[near, grip.side] += share

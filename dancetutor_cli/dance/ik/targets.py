@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from dancetutor_cli.dance.context import Context, hold_share
 from dancetutor_cli.dance.foot_path import Feet
-from dancetutor_cli.dance.gait import walking, with_gait
+from dancetutor_cli.dance.gait import walk_pose, with_gait
 from dancetutor_cli.dance.ik.full_body import ArmGoal, Targets, arm_rotations
 from dancetutor_cli.dance.ik.hands import (
     HandTargets,
@@ -16,7 +17,7 @@ from dancetutor_cli.dance.ik.hands import (
     Torso,
     bent_arms,
     hip_clearance,
-    hold,
+    lead_hands_to_bar,
     leg_clearance,
     palm_down,
     trunk_clearance,
@@ -62,17 +63,35 @@ ASKEWED = 1.6  # about how far `_wandering` goes up and down
 
 
 @dataclass(frozen=True, slots=True)
-class Below:
-    """What hanging hands must not meet, at the times that are asked for."""
+class Obstacles:
+    """The targets of the parts of the body that hanging hands must not meet, at f times."""
 
+    torso: Torso
     hips: Hips
     legs: Legs
 
 
-def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, below: Below, context: Context) -> HandTargets:
-    """Return targets at times `at` (f,); torso, below : at the same times, as the IK will be asked for them."""
+class FreeHands(NamedTuple):
+    """How free hands hang, at the n times of a trajectory.
+
+    hang : (n, 2, 3) metres, where they hang from the shoulders, in the chest's upright axes
+    lag : (n, 2, 3) metres, how far inertia takes them from there, in the world
+    clear : (n, 2) 0 to 1, how much they must keep clear of the trunk: as far as they are held back, and always if there
+    is a bar
+    """
+
+    hang: Array
+    lag: Array
+    clear: Array
+
+
+def arm_targets(
+    plan: Plan, body: Trajectory, at: Array, obstacles: Obstacles, free: FreeHands, context: Context
+) -> HandTargets:
+    """Return the targets of hands at times `at` (f,). obstacles : at the same times; free : at the body's times"""
+    torso = obstacles.torso
     lean, upright = quat.swing_twist(torso.chest, UP)
-    hang, lag, held = (sample_path(p, body.times, at) for p in body.hands or free_hands(plan, body, context))
+    hang, lag, held = (sample_path(path, body.times, at) for path in free)
     arms = context.settings.arms
     # in a deep bend the other arm goes some of the way with the chest, its hand to the knees
     first, last = np.radians((arms.bend_from, arms.bend_full))
@@ -85,12 +104,12 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, below: Be
     clear = context.settings.arms.clear_aside, context.settings.arms.clear_ahead
     wrists += held[..., None] * trunk_clearance(wrists, torso, clear)
     wrists += _out_from_a_lean(wrists, torso, upright, arms)
-    wrists += hip_clearance(wrists, below.hips, arms)
+    wrists += hip_clearance(wrists, obstacles.hips, arms)
     out = np.empty((len(at), 2, 3))
     out[..., 0] = np.array([1.0, -1.0]) * (arms.elbow_out + (arms.bend_elbow_out - arms.elbow_out) * bent)[:, None]
     out[..., 1:] = -arms.elbow_down, -arms.elbow_back
     elbows = quat.rotate(upright[:, None], out)
-    wrists += leg_clearance(wrists, torso.shoulders, elbows, below.legs, context.skeleton, arms.legs_room)
+    wrists += leg_clearance(wrists, torso.shoulders, elbows, obstacles.legs, context.skeleton, arms.legs_room)
     wrists += _bent(wrists - torso.shoulders, arms.longest)
     inward = _on_her_own_pad(wrists[..., 0], context)
     ahead = quat.rotate(upright, np.array([0.0, 0.0, arms.own_pad_ahead]))
@@ -98,9 +117,9 @@ def arm_targets(plan: Plan, body: Trajectory, at: Array, torso: Torso, below: Be
     wrists[..., 0] += _on_her_own_pad(wrists[..., 0], context)
     wrists[..., 1] = np.maximum(wrists[..., 1], arms.lowest)
     elbows[..., 0] += ELBOWS_IN * np.clip(inward / GIVEN_WAY, -1.0, 1.0)
-    free = np.tile(quat.IDENTITY, (len(at), 2, 1))
-    hands = HandTargets(wrists, free, np.zeros((len(at), 2)), np.zeros((len(at), 2)), elbows)
-    hold(plan.grips, at, hands, torso, context)
+    straight = np.tile(quat.IDENTITY, (len(at), 2, 1))
+    hands = HandTargets(wrists, straight, np.zeros((len(at), 2)), np.zeros((len(at), 2)), elbows)
+    lead_hands_to_bar(plan.grips, at, hands, torso, context)
     for press in plan.presses:
         _press(press, at, hands, body, context)
     return hands
@@ -137,16 +156,11 @@ def _on_her_own_pad(x: Array, context: Context) -> Array:
     return np.asarray(outward * soft_excess(-inside, ASIDE_SOFT))
 
 
-def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, Array, Array]:
-    """Return where free hands hang from the shoulders, in the chest's upright axes, and how far inertia takes them from
-    there.
-
-    Both (n, 2, 3) at the body's times, the second in the world; and (n, 2), 0 to 1, how much they must keep clear of
-    the trunk: as far as they are held back, and always if there is a bar.
-    """
+def free_hands(plan: Plan, body: Trajectory, context: Context) -> FreeHands:
+    """Return how hands hang that have nothing to do, at the body's times: with the legs, the music and inertia."""
     settings, skeleton, arms = context.settings, context.skeleton, context.settings.arms
     rate = 1.0 / float(body.times[1] - body.times[0])
-    effort = lately(tempo_factor(plan, body.times, settings), rate, arms.effort)[:, None]
+    effort = moving_mean(tempo_factor(plan, body.times, settings), rate, arms.effort)[:, None]
     wander, askew = _wandering(body.times + context.phase, arms), ASKEW
     if plan.lead == 1:  # a song in which the right foot leads has left and right hand exchanged
         wander, askew = (ways[..., ::-1, :] * [-1.0, 1.0, 1.0] for ways in (wander, askew))
@@ -188,7 +202,7 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> tuple[Array, A
         lag[:, side] = late + back
     if context.bar is not None:  # behind her back, a hand has the trunk in its way
         held[:] = 1.0
-    return hang, lag, held
+    return FreeHands(hang, lag, held)
 
 
 def _upward(x: Array) -> Array:
@@ -201,9 +215,9 @@ def _hanging(carried: Array, effort: tuple[Array, Array], swing: tuple[Array, Ar
 
     carried : (n, 2), -1 to 1; effort : of streams, 0 to 1, and how unlike both hands are; swing : see `bent_arms`
     """
-    arms, (lately, unlike) = context.settings.arms, effort
-    bent = (arms.bent + arms.stream_bent * lately) * unlike + arms.carried_bent * carried
-    upper = arms.carried_upper * carried - arms.upper_back - arms.stream_back * lately
+    arms, (streams, unlike) = context.settings.arms, effort
+    bent = (arms.bent + arms.stream_bent * streams) * unlike + arms.carried_bent * carried
+    upper = arms.carried_upper * carried - arms.upper_back - arms.stream_back * streams
     bent = bent - soft_excess(bent + upper - arms.forearm_most, LEVEL_SOFT)
     return bent_arms(swing[0], np.radians(bent), np.radians(upper), swing[1], context)
 
@@ -222,12 +236,12 @@ def _speed_limit_offset(path: Array, rate: float, arms: ArmSettings) -> tuple[Ar
     quick = np.linalg.norm(np.gradient(path, axis=0), axis=1) * rate
     if quick.max() <= arms.quick:
         return np.zeros_like(path), np.zeros(len(path))
-    held = lately(smooth((quick - arms.quick) / arms.quicker), rate, 2.0 * arms.hold_back)
+    held = moving_mean(smooth((quick - arms.quick) / arms.quicker), rate, 2.0 * arms.hold_back)
     share = smooth(held / HELD_BACK)[:, None]
     return _at_most(share * (smooth_path(path, ones, rate, arms.hold_back) - path), arms.held_back), share[:, 0]
 
 
-def lately(tempo: Array, rate: float, around: float) -> Array:
+def moving_mean(tempo: Array, rate: float, around: float) -> Array:
     """Return the mean (n,) of the tempo from `around` seconds before to `around` seconds after: the effort."""
     width = max(1, round(around * rate))
     summed = np.cumsum(np.concatenate((np.repeat(tempo[:1], width), tempo, np.repeat(tempo[-1:], width))))
@@ -246,7 +260,7 @@ def _behind_the_chest(hands: tuple[Array, Array], yaw: Array, rate: float, arms:
     quick = np.abs(np.gradient(yaw)) * rate
     drawn = smooth((quick - np.radians(arms.turn_easy)) / np.radians(arms.turn_quick))[:, None]
     drawn = smooth_path(drawn, ones, rate, arms.turn_time)
-    spin = np.abs(lately(np.gradient(yaw) * rate, rate, SPUN))  # on and on, not to and fro
+    spin = np.abs(moving_mean(np.gradient(yaw) * rate, rate, SPUN))  # on and on, not to and fro
     spinning = smooth((spin - np.radians(arms.spin_easy)) / np.radians(arms.spin_quick))[:, None]
     near = hang - np.maximum(0.7 * drawn, spinning)[..., None] * way
     near[..., 0] -= arms.drawn_in * drawn * np.array([1.0, -1.0])
@@ -265,7 +279,7 @@ def _wandering(times: Array, arms: ArmSettings) -> Array:
 def _swing(plan: Plan, body: Trajectory, settings: MotionSettings) -> Array:
     """Return how far forward each hand (n, 2) is at the body's times: for the legs' momentum, or as in a walk."""
     both = np.outer(body.arms[:, 0], (-1.0, 1.0))
-    gait = walking(plan.walks, body.times, settings.walk)
+    gait = walk_pose(plan.walks, body.times, settings.walk)
     return both if gait is None else np.asarray((1.0 - gait.own[:, None]) * both + gait.hands)
 
 
@@ -338,11 +352,16 @@ def _lay_down(press: Press, body: Trajectory, context: Context) -> tuple[Array, 
 TOES_BEND = np.radians(40.0)  # a foot whose heel is farther up carries its toes
 
 
-def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Context) -> Targets:
-    """Return targets at the times `at` (f,); `feet` are sampled there, `body` on its own even times."""
+def ik_targets(
+    plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Context, free: FreeHands | None = None
+) -> Targets:
+    """Return targets at the times `at` (f,); `feet` are sampled there, `body` on its own even times.
+
+    free : `free_hands` of the body, from a caller who needs targets at several times; None: computed here
+    """
     skeleton = context.skeleton
     trunk = trunk_at(body, at, context)
-    gait = walking(plan.walks, at, context.settings.walk)
+    gait = walk_pose(plan.walks, at, context.settings.walk)
     if gait is not None:
         pelvis_rotation, chest = with_gait(gait, trunk.pelvis_rotation, trunk.chest)
         trunk = trunk._replace(pelvis_rotation=pelvis_rotation, chest=chest)
@@ -359,8 +378,10 @@ def ik_targets(plan: Plan, body: Trajectory, feet: Feet, at: Array, context: Con
     hung = Hung(pelvis, trunk.pelvis_rotation, ankles)
     poles = hung.legs(skeleton, poles).turned(sample_path(body.knees, body.times, at))
     poles = part_knees(skeleton, hung, poles, context.settings.knees)
-    below = Below(Hips(pelvis, trunk.pelvis_rotation), hung.legs(skeleton, poles))
-    hands = arm_targets(plan, body, at, Torso(shoulders, trunk.chest), below, context)
+    obstacles = Obstacles(
+        Torso(shoulders, trunk.chest), Hips(pelvis, trunk.pelvis_rotation), hung.legs(skeleton, poles)
+    )
+    hands = arm_targets(plan, body, at, obstacles, free or free_hands(plan, body, context), context)
     return Targets(
         pelvis, trunk.pelvis_rotation, trunk.chest, shoulders, hands.wrists, hands.rotation, hands.pinned, hands.elbows,
         ankles, np.stack(soles, axis=1), np.stack(toes, axis=1), poles, hands.pull,

@@ -57,7 +57,7 @@ def soft_legs(
     return root, AnkleTracks(places, feet.turns)
 
 
-def risen(skeleton: Skeleton, poses: Poses, feet: AnkleTracks, plants: Plants, times: Array) -> Array:
+def raised_root(skeleton: Skeleton, poses: Poses, feet: AnkleTracks, plants: Plants, times: Array) -> Array:
     """Return the root (f, 3), so high that ankles of feet with held heels are within their limits, as far as legs
     reach.
 

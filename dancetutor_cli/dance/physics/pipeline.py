@@ -12,7 +12,7 @@ from dancetutor_cli.chart.timing import heard_second
 from dancetutor_cli.dance.motion import Distances, Motion
 from dancetutor_cli.dance.physics.arms import clear_arms, push_arms_out
 from dancetutor_cli.dance.physics.blend import Blend, mean_distances, mean_poses
-from dancetutor_cli.dance.physics.legs import eased_ankles, restore_mass_path, risen, soft_legs
+from dancetutor_cli.dance.physics.legs import eased_ankles, raised_root, restore_mass_path, soft_legs
 from dancetutor_cli.dance.physics.plants import Plants, flatten_toes, planted, release_rolling_feet, tidied
 from dancetutor_cli.dance.physics.pushes import (
     Actor,
@@ -173,7 +173,7 @@ def _corrected(
         sunk, feet = soft_legs(skeleton, Poses(rotations, root), feet, held, times)
     poses = repinned(skeleton, Poses(rotations, sunk), feet)
     if plants is not None:
-        up = risen(skeleton, poses, feet, plants, times) - poses.root
+        up = raised_root(skeleton, poses, feet, plants, times) - poses.root
         poses = repinned(skeleton, Poses(rotations, poses.root + up), feet)
         poses, feet, plants = eased_ankles(skeleton, poses, feet, plants, held, times)
         if "knees" in corrections:  # turned feet need other lengths of their legs

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dancetutor_cli.dance.context import held_at
+from dancetutor_cli.dance.context import held_notes
 from dancetutor_cli.dance.physics.plants import Plants, cleared
 from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, repinned
 from dancetutor_cli.dance.rig import quaternion as quat
@@ -376,7 +376,7 @@ def recovered(
             feet = staggering(motion, feet, push.second, apart[most])
             gone = {id(c) for c in missed}
             motion = replace(motion, contacts=tuple(c for c in motion.contacts if id(c) not in gone))
-            missed = [*held_at(motion, push.second), *missed]
+            missed = [*held_notes(motion, push.second), *missed]
         out.append(missed)
     return motion, feet, out
 

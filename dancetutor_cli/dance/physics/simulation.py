@@ -39,7 +39,7 @@ _JOINTS = {
 }
 
 
-def follow(values: Array, rate: float, follower: Follower) -> Array:
+def follower_path(values: Array, rate: float, follower: Follower) -> Array:
     """Return the path x (f, d), evenly sampled at `rate`, behind the follower, which is at rest in the first frame.
 
         y + k1 y' + k2 y'' = x + k3 x' ,    k1 = 2 z / w ,  k2 = 1 / w^2 ,  k3 = r z / w ,  w = 2 pi f
@@ -64,7 +64,7 @@ def follow_all(skeleton: Skeleton, rotations: Array, root: Array, style: Style) 
             for joint in (skeleton.index(name) for name in _JOINTS[part]):
                 rotations[:, joint] = _followed(given[:, joint], rate, style.follower[part])
     if "pelvis" in style.follower:
-        root = follow(root, rate, style.follower["pelvis"])
+        root = follower_path(root, rate, style.follower["pelvis"])
         rotations[:, 0] = _followed(given[:, 0], rate, style.follower["pelvis"])
     if "arms" in style.follower:
         _arms(skeleton, given, rotations, rate, style.follower["arms"])
@@ -89,7 +89,7 @@ def _arms(skeleton: Skeleton, given: Array, rotations: Array, rate: float, follo
 
 def _followed(turns: Array, rate: float, follower: Follower) -> Array:
     """Return turns (f, 4) behind a follower."""
-    return quat.normalize(follow(quat.continuous(turns), rate, follower))
+    return quat.normalize(follower_path(quat.continuous(turns), rate, follower))
 
 
 # Forces are actuators of the engine (implicitfast), which uses the place of a point in the present step. Forces that

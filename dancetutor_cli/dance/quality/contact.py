@@ -143,7 +143,7 @@ MAX_LISTED_MINES = 6  # largest number of moments on mines that a note lists
 
 def ground_figures(motion: Motion, body: Body, mines: Array | None) -> tuple[tuple[Figure, ...], tuple[str, ...]]:
     """Return figures and notes. mines : (m, 3) of second, x, z; None if not known."""
-    slide, pivots = plant_slides(body, motion.skeleton)
+    slide, pivots = longest_slide(body, motion.skeleton)
     under = np.zeros(0, np.int8) if mines is None else feet_on_mines(motion, mines)
     figures = (
         Figure("plant slide", 1000 * slide, "mm", 1.0),
@@ -158,7 +158,7 @@ def ground_figures(motion: Motion, body: Body, mines: Array | None) -> tuple[tup
     return figures, (*notes, *(() if mines is None else mine_messages(mines[under >= 0, 0])))
 
 
-def plant_slides(body: Body, skeleton: Skeleton) -> tuple[float, int]:
+def longest_slide(body: Body, skeleton: Skeleton) -> tuple[float, int]:
     """Return the longest path (metres) of a sole point in a plant (of the ball's joint in a pivot), and the number of
     pivots.
     """

@@ -221,7 +221,7 @@ def posture_figures(body: Body, skeleton: Skeleton, contacts: tuple[Contact, ...
     off, fold, give = _medians(jump_knees(body, knees))
     shift = weight_shifts(body, contacts)
     wrists = np.maximum.reduce([speeds(body, skeleton.index(f"{s}_radiocarpal")) for s in "lr"])
-    turning = np.abs(np.diff(pelvis_yaw(body, skeleton))) * body.rate
+    turning = np.abs(np.diff(hip_line_yaw(body, skeleton))) * body.rate
     neck = neck_yaw(body, skeleton)
     whipped = np.abs(np.diff(np.unwrap(neck))) * body.rate
     return (
@@ -283,7 +283,7 @@ def speeds(body: Body, joint: int) -> Array:
     return np.asarray(np.linalg.norm(np.diff(body.joints[:, joint], axis=0), axis=1) * body.rate)
 
 
-def pelvis_yaw(body: Body, skeleton: Skeleton) -> Array:
+def hip_line_yaw(body: Body, skeleton: Skeleton) -> Array:
     """Return the yaw (f,) of the pelvis, radians, unwrapped: square to the line between the hips."""
     across = body.joints[:, skeleton.index("l_hip")] - body.joints[:, skeleton.index("r_hip")]
     return np.unwrap(np.arctan2(-across[:, 2], across[:, 0]))

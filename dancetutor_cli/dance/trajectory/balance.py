@@ -141,7 +141,7 @@ class Pendulum:
     """The inverted pendulum on the zero-moment point at n even times.
 
     times : (n,) seconds; slowness : (n,) 1 / omega^2 = y / (y'' + g), seconds squared; ignored in flight
-    seen : (n,) slowness without trembling above 10 Hz
+    smooth_slowness : (n,) slowness without trembling above 10 Hz
     offset : (n, 2) from the pelvis to the centre of mass, as far as known
     turning : (n, 2) as from `momentum.rotation_zmp_offset`, as far as known
     rail : the bar, while hands hold it
@@ -149,7 +149,7 @@ class Pendulum:
 
     times: Array
     slowness: Array
-    seen: Array
+    smooth_slowness: Array
     offset: Array
     turning: Array
     rail: Rail | None = None
@@ -219,7 +219,7 @@ def balanced_path(
     times, body, rate = pendulum.times, settings.body, NODE_RATE if tightened else ROUGH_RATE
     nodes = times[0] + np.arange(int(np.ceil((times[-1] - times[0]) * rate - 1e-6)) + 1) / rate
     feet = (_nearest(feet[0], times, nodes), _nearest(feet[1], times, nodes))
-    slowness, seen = (np.interp(nodes, times, x) for x in (pendulum.slowness, pendulum.seen))
+    slowness, seen = (np.interp(nodes, times, x) for x in (pendulum.slowness, pendulum.smooth_slowness))
     offset = sample_path(pendulum.offset, times, nodes)
     room = _room(feet, ball_to_ankle(dancer_skeleton()), body.farthest)
     feet = _carrying(feet, rate)

@@ -37,17 +37,17 @@ def reaching(presses: Presses, times: Array, hands: HandSettings) -> Array:
     return out
 
 
-def bent_down(presses: Presses, deeper: Array | None, times: Array, hands: HandSettings) -> Array:
+def bent_down(presses: Presses, deeper: Array, times: Array, hands: HandSettings) -> Array:
     """Return (n, 2): how far the body has gone down to the floor, 0 to 1, and how much deeper than usual, metres.
 
-    deeper : (p,) metres for each press; None: 0 for all
+    deeper : (p,) metres for each press
     """
     out = np.zeros((len(times), 2))
     for k, press in enumerate(presses):
         share = press_share(press, times, hands.reach_down)
         more = share > out[:, 0]
         out[more, 0] = share[more]
-        out[:, 1] = np.maximum(out[:, 1], share * (0.0 if deeper is None else float(deeper[k])))
+        out[:, 1] = np.maximum(out[:, 1], share * float(deeper[k]))
     return out
 
 
@@ -228,7 +228,7 @@ def leaning_share(grips: tuple[Grip, ...], times: Array, settings: BarSettings) 
     return out
 
 
-def held_at(grips: tuple[Grip, ...], times: Array) -> Flags:
+def has_hand_on_bar(grips: tuple[Grip, ...], times: Array) -> Flags:
     """Return whether a hand holds the bar at the times (n,)."""
     out = np.zeros(len(times), dtype=bool)
     for grip in grips:

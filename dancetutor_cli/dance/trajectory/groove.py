@@ -126,7 +126,7 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
     free = np.clip(1.0 - share - occupation.busy - occupation.waits, 0.0, 1.0)
     loose = np.clip(1.0 - occupation.busy - occupation.waits, 0.0, 1.0) * _among_steps(plan, times)
     carried = loose[:, None] * carriage(plan, times, context)
-    pump = free * grounded * (BEATS * to_side + stepped(plan, times))
+    pump = free * grounded * (BEATS * to_side + latest_side(plan, times))
     return Groove(beat, sink, bob, share * to_side, pump, grounded, carried)
 
 
@@ -150,7 +150,7 @@ def _bob(context: Context, times: Array, tempo: Array) -> Array:
     return np.asarray(far / 2.0 * (1.0 + (1.0 + lost) * pulse))
 
 
-def stepped(plan: Plan, times: Array) -> Array:
+def latest_side(plan: Plan, times: Array) -> Array:
     """On which foot (n,) she has stepped last, -1 to 1, positive left, at even times; less where steps are quicker."""
     steps = sorted((m.land, 1.0 - 2.0 * side) for side, track in enumerate(plan.feet) for m in track.moves if _to(m))
     if not steps:

@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from dancetutor_cli.dance.clearance import reduction
-from dancetutor_cli.dance.plan import Jump, Plan, Swing, Walk
+from dancetutor_cli.dance.plan import Jump, Plan
 from dancetutor_cli.dance.quadratic import BandedLeastSquares, Limits, solve_surely
 from dancetutor_cli.dance.rig.body import GRAVITY
 from dancetutor_cli.dance.settings import MotionSettings
@@ -29,7 +29,7 @@ def tempo_factor(plan: Plan, times: Array, settings: MotionSettings) -> Array:
     """Return how fast (n,) the steps around each of the even `times` are: 0 for the slowest, 1 for a stream."""
     step, around_them = settings.step, settings.body.stream_time
     fast = np.zeros(len(times))
-    for swing in (m for track in plan.feet for m in track.moves if isinstance(m, Swing) and not isinstance(m, Walk)):
+    for swing in plan.swings:
         around = slice(*np.searchsorted(times, (swing.lift - around_them, swing.land + around_them)))
         fast[around] = np.maximum(fast[around], reduction(swing.land - swing.lift, step.fast, step.longest))
     rate = 1.0 / float(times[1] - times[0])
@@ -73,7 +73,7 @@ def jump_crouch(plan: Plan, times: Array, jump: JumpSettings) -> Array:
 
 def landing_give(plan: Plan, times: Array, body: BodySettings) -> Array:
     """Return how far (n,) knees give after steps, metres: most a little after a landing, less if the next is soon."""
-    swings = [m for track in plan.feet for m in track.moves if isinstance(m, Swing) and not isinstance(m, Walk | Jump)]
+    swings = [swing for swing in plan.swings if not isinstance(swing, Jump)]
     lands = sorted({m.land for track in plan.feet for m in track.moves})
     out = np.zeros(len(times))
     for land in {m.land for m in swings}:

@@ -8,7 +8,7 @@ import numpy as np
 
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.foot_path import Feet
-from dancetutor_cli.dance.gait import gaze_ahead, walking
+from dancetutor_cli.dance.gait import gaze_ahead, walk_pose
 from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.rig.body import GRAVITY
 from dancetutor_cli.dance.settings import MotionSettings
@@ -19,7 +19,7 @@ from dancetutor_cli.dance.trajectory.facing import (
     bent_down,
     chest_and_head,
     crossing_share,
-    held_at,
+    has_hand_on_bar,
     leaned_across,
     leaning_share,
     leaning_tilt,
@@ -55,13 +55,12 @@ class Trajectory:
     mass : (n, 2), (x, z) of the centre of mass; mass_height : its height
     ground : (n, 2), (x, z) of the root; height : (n,) of the root; yaw, chest_yaw, head_yaw : (n,) radians, unwrapped
     tilt : (n, 2), horizontal (x, z) direction times angle by which the chest leans; reaching : (n, 2), 0 to 1, how far
-    the body has bent for the left and right hand; heels : (n, 2), radians that they are raised for the ankles' sake
-    knees : (n, 2), radians that knees are turned outward for the ankles' sake
+    the body has bent for the left and right hand; heels : (n, 2), radians that they are raised to spare the ankles
+    knees : (n, 2), radians that knees are turned outward to spare the ankles
     beat : (n,) 0 to 1, how far she has given way to the beat; sway : (n,) as in `groove.Groove`
     listed : (n,) radians that the right hip is lower than the left one
     arms : (n, 5) `swing` and `raised` as in `momentum.CounterMotion`, `pump` and `carried` as in `groove.Groove`
-    softened : what had no solution within the limits of legs and soles, so that they gave way; for people
-    hands : the result of `ik.targets.free_hands` for this trajectory, if it is known
+    softened : the paths that had no solution within the limits of legs and soles, so that these gave way; for people
     """
 
     times: Array
@@ -81,41 +80,51 @@ class Trajectory:
     listed: Array
     arms: Array
     softened: tuple[str, ...] = ()
-    hands: tuple[Array, Array, Array] | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class RoughBake:
-    """The results of a rough bake.
+    """The measures of a rough bake, for the next plan of the body's path.
 
-    trajectory : the one that was baked
-    above : (n, 3), centre of mass minus root
-    turning : (n, 2) as of `momentum.rotation_zmp_offset`, or None if it is not known
-    deeper : (p,) how far each press of a palm drew the root below its wanted place, metres; None without presses
-    hips : (n, 2, 3), from the root to each hip; None for those of an upright pelvis
-    push_off : (n, 2) as of `legs.push_off`; None without it
+    trajectory : the one that was baked; None before the first rough bake
+    above : (n, 3) metres, centre of mass minus root
+    turning : (n, 2) as of `momentum.rotation_zmp_offset`
+    hips : (n, 2, 3) metres, from the root to each hip
+    push_off : (n, 2) radians, as of `legs.push_off`
+    deeper : (p,) metres by which each press of a palm pulled the root down
     keep : leave the path over the ground as it was; tightened : as in `balanced_path`
     """
 
-    trajectory: Trajectory
+    trajectory: Trajectory | None
     above: Array
-    turning: Array | None = None
-    hips: Array | None = None
-    push_off: Array | None = None
-    deeper: Array | None = None
+    turning: Array
+    hips: Array
+    push_off: Array
+    deeper: Array
     keep: bool = False
     tightened: int = 0
 
 
-def body_trajectory(
-    plan: Plan, times: Array, feet: Feet, context: Context, known: RoughBake | None = None
-) -> Trajectory:
-    """Return the body on even `times` (n,), with feet sampled there; known : None in the first round."""
+def bake_at_rest(plan: Plan, times: Array, context: Context) -> RoughBake:
+    """Return what is assumed before the first rough bake: an upright body that turns as planned and pushes nothing."""
+    none = np.zeros((len(times), 2))
+    return RoughBake(
+        trajectory=None,
+        above=np.tile(above_at_rest(context.skeleton), (len(times), 1)),
+        turning=none,
+        hips=upright_hips(pelvis_yaw(plan, times, context.settings), context.skeleton),
+        push_off=none,
+        deeper=np.zeros(len(plan.presses)),
+    )
+
+
+def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, rough: RoughBake) -> Trajectory:
+    """Return the body on even `times` (n,), with feet sampled there. rough : first `bake_at_rest`, then measured"""
     settings = context.settings
     held = leaning_share(plan.grips, times, settings.bar)
-    course, softened = _course(plan, times, feet, context, known)
+    course, softened = _course(plan, times, feet, context, rough)
     reached = reaching(plan.presses, times, settings.hands)
-    gait = walking(plan.walks, times, settings.walk)
+    gait = walk_pose(plan.walks, times, settings.walk)
     own = np.zeros(len(times)) if gait is None else gait.own
     crouch = jump_crouch(plan, times, settings.jump)
     tempo = tempo_factor(plan, times, settings)
@@ -125,7 +134,7 @@ def body_trajectory(
     occupation = Occupation(tempo, reached.sum(axis=1) + at_bar + own, waiting.share)
     groove = groove_of(plan, times, occupation, context)
     leg = settings.body.leg - settings.body.stream_crouch * tempo - crouch
-    bent = bent_down(plan.presses, None if known is None else known.deeper, times, settings.hands)
+    bent = bent_down(plan.presses, rough.deeper, times, settings.hands)
     give = landing_give(plan, times, settings.body)
     narrow = 1.0 - _straddled(feet, settings)
     sink = np.maximum(narrow * groove.sink, give) + (0.0 if gait is None else gait.sink)
@@ -135,8 +144,9 @@ def body_trajectory(
     most = settings.body.soft_reach + push * max(settings.jump.push - settings.body.soft_reach, 0.0)
     most = np.where(feet[0].down | feet[1].down, most, settings.jump.reach)
     legs = LegGoals(leg, most, sink, narrow * groove.bob, bent, settings.jump.drive * np.maximum(push, catch), tempo)
-    stretched = feet if known is None or known.push_off is None else raised(feet, known.push_off)
-    mass_height = height_path(_height_goals(stretched, course, context, legs), plan.flights, settings.body)
+    mass_height = height_path(
+        _height_goals(raised(feet, rough.push_off), course, context, legs), plan.flights, settings.body
+    )
     chest, head = chest_and_head(plan, course, gaze_ahead(plan, times, settings.walk), settings)
     upright = (1.0 - reached.max(axis=1)) * (1.0 - own)
     loose = (1.0 - held) * upright
@@ -192,53 +202,47 @@ def _neck_room(turned: Array, look: LookSettings) -> Array:
     return np.asarray(1.0 - smooth((np.abs(turned) - np.radians(look.neck_easy)) / np.radians(look.neck_room)))
 
 
-def _course(
-    plan: Plan, times: Array, feet: Feet, context: Context, known: RoughBake | None
-) -> tuple[Course, tuple[str, ...]]:
+def _course(plan: Plan, times: Array, feet: Feet, context: Context, rough: RoughBake) -> tuple[Course, tuple[str, ...]]:
     """Return where the body goes over the ground, and which limits had to be softened."""
-    settings = context.settings
-    above = np.tile(above_at_rest(context.skeleton), (len(times), 1)) if known is None else known.above
+    settings, baked = context.settings, rough.trajectory
     yaw = pelvis_yaw(plan, times, settings)
-    seen = None if known is None else known.hips
-    hips = upright_hips(yaw, context.skeleton) if seen is None else seen
-    if known is not None and known.keep:
-        softened = tuple(what for what in known.trajectory.softened if what == BALANCE)
-        return Course(times, known.trajectory.mass, above, hips, yaw), softened
-    pendulum = _pendulum(times, known, above)
-    gait = walking(plan.walks, times, settings.walk)
+    if baked is not None and rough.keep:
+        softened = tuple(what for what in baked.softened if what == BALANCE)
+        return Course(times, baked.mass, rough.above, rough.hips, yaw), softened
+    pendulum = _pendulum(times, rough)
+    gait = walk_pose(plan.walks, times, settings.walk)
     if gait is not None:  # who walks has legs that swing slowly, and her weight on the edges of her soles
         pendulum = replace(pendulum, turning=(1.0 - gait.own)[:, None] * pendulum.turning)
     waiting = waiting_at(plan, times, context)
     shift = waiting.shift + (1.0 - waiting.share) * stance(plan, times, context)
-    if known is not None:  # heels that rise for their ankles' sake carry nothing; palms do, on their way already
-        up = known.trajectory.heels * (1.0 - reaching(plan.presses, times, settings.hands).max(axis=1, keepdims=True))
+    if baked is not None:  # heels that rise to spare their ankles carry nothing; palms do, on their way already
+        up = baked.heels * (1.0 - reaching(plan.presses, times, settings.hands).max(axis=1, keepdims=True))
         feet = raised(feet, up)
     if context.bar is not None:
         nearer = settings.across.nearer * np.abs(crossing_share(plan.grips, times, settings.across))
         ahead = context.bar.behind + settings.bar.forward - nearer
-        held = held_at(plan.grips, times)
+        held = has_hand_on_bar(plan.grips, times)
         pendulum = replace(pendulum, rail=Rail(ahead, held, settings.bar.soft))
-    mass, swept = balanced_path(feet, pendulum, settings, 0 if known is None else known.tightened, plan.hand, shift)
-    return Course(times, mass, above, hips, yaw), (BALANCE,) if swept else ()
+    mass, swept = balanced_path(feet, pendulum, settings, rough.tightened, plan.hand, shift)
+    return Course(times, mass, rough.above, rough.hips, yaw), (BALANCE,) if swept else ()
 
 
-def _pendulum(times: Array, known: RoughBake | None, above: Array) -> Pendulum:
+def _pendulum(times: Array, rough: RoughBake) -> Pendulum:
     """Return the body's inverted pendulum; it stands still until the height of the centre of mass is known."""
-    offset = above[:, [0, 2]]
-    if known is None:
+    offset = rough.above[:, [0, 2]]
+    if rough.trajectory is None:
         still = np.full(len(times), STANDING_HEIGHT / GRAVITY)
-        return Pendulum(times, still, still, offset, np.zeros((len(times), 2)))
-    turning = np.zeros((len(times), 2)) if known.turning is None else known.turning
-    height, step = known.trajectory.mass_height, 1.0 / 60.0
+        return Pendulum(times, still, still, offset, rough.turning)
+    height, step = rough.trajectory.mass_height, 1.0 / 60.0
     y = height.at(times)
     acceleration = (height.at(times + step) - 2 * y + height.at(times - step)) / step**2
     rate = 1.0 / float(times[1] - times[0])
-    seen = _slowness(low_pass(y, rate), low_pass(acceleration, rate), LEAST_SEEN)
-    return Pendulum(times, _slowness(y, acceleration, LEAST_FALL), seen, offset, turning)
+    smooth_slowness = _slowness(low_pass(y, rate), low_pass(acceleration, rate), LEAST_SEEN)
+    return Pendulum(times, _slowness(y, acceleration, LEAST_FALL), smooth_slowness, offset, rough.turning)
 
 
 def _slowness(y: Array, acceleration: Array, least: float) -> Array:
-    """1 / omega^2 = y / (y'' + g), seconds squared."""
+    """Return 1 / omega^2 = y / (y'' + g), seconds squared, of a pendulum of height y. least : part of g"""
     return np.asarray(y / np.maximum(acceleration + GRAVITY, least * GRAVITY))
 
 
@@ -280,6 +284,6 @@ def _height_goals(feet: Feet, course: Course, context: Context, legs: LegGoals) 
     return HeightGoals(course.times, wanted + above, highest - legs.sink + above, above, legs.firm, legs.tempo)
 
 
-def stepping(feet: Feet, settings: MotionSettings) -> Array:
-    """(n,) 1 while the left foot is in the air at full height, -1 for the right one, 0 when both are equally high."""
+def lift_side(feet: Feet, settings: MotionSettings) -> Array:
+    """Return which foot is higher (n,): 1 while the left one is at the full height of a step, -1 for the right one."""
     return np.clip((feet[0].ball[:, 1] - feet[1].ball[:, 1]) / settings.step.height_slow, -1.0, 1.0)

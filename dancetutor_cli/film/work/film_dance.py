@@ -134,7 +134,7 @@ def film_dance(request: FilmRequest, subject: FilmSubject) -> FilmDance:
 def _cut(request: FilmRequest, performance: Performance, clock: Clock) -> tuple[Motion, ...]:
     """Return the part of a performance that the film shows, with each dancer at her place on the common pad."""
     wanted = replace(clock.cut_at(performance.rate), walks_off=request.background)
-    done = performance.motions(wanted, piece_runner())
+    done = performance.bake(wanted, piece_runner())
     return tuple(shifted(one.motion, *who.place) for one, who in zip(done, performance.dancers, strict=True))
 
 

@@ -13,7 +13,7 @@ from dancetutor_cli.dance.clearance import gaps_at
 from dancetutor_cli.dance.context import context_of
 from dancetutor_cli.dance.foot_path import foot_path
 from dancetutor_cli.dance.footwork.walks import first_place
-from dancetutor_cli.dance.plan import Walk
+from dancetutor_cli.dance.plan import WalkStep
 from dancetutor_cli.dance.settings import default_settings
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.pads import Pad, load_pad
@@ -46,7 +46,7 @@ def test_a_footswitch_on_the_panel_where_she_waits_leaves_both_shoes_room(
     start: float, column: int, first: Limb, away: int, pump_double: Pad
 ) -> None:
     plan = plan_of(chart().timing, switched(start, column, first, away), pump_double)
-    assert any(isinstance(move, Walk) for move in plan.feet[0].moves if move.land < start) == (start > 2.0)
+    assert any(isinstance(move, WalkStep) for move in plan.feet[0].moves if move.land < start) == (start > 2.0)
     times = np.arange(start - 0.6, start + 1.5, 0.005)
     left, right = (foot_path(track, times, SETTINGS) for track in plan.feet)
     gaps = [

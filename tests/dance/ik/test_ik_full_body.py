@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from dancetutor_cli.dance.ik.full_body import Targets, solve
+from dancetutor_cli.dance.ik.full_body import Targets, solve_poses
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
@@ -43,7 +43,7 @@ def random_targets(frames: int, seed: int) -> Targets:
 
 def test_feet_and_hands_are_within_a_tenth_of_a_millimetre() -> None:
     targets = random_targets(2000, 1)
-    positions, world = world_transforms(SKELETON, *solve(SKELETON, targets, REACH))
+    positions, world = world_transforms(SKELETON, *solve_poses(SKELETON, targets, REACH))
     for side, name in enumerate("lr"):
         foot = positions[:, SKELETON.index(f"{name}_talocrural")] - targets.ankles[:, side]
         hand = positions[:, SKELETON.index(f"{name}_radiocarpal")] - targets.wrists[:, side]
@@ -55,7 +55,7 @@ def test_feet_and_hands_are_within_a_tenth_of_a_millimetre() -> None:
 
 def test_knees_are_hinges_that_bend_backward_and_point_forward() -> None:
     targets = random_targets(500, 2)
-    rotations, root = solve(SKELETON, targets, REACH)
+    rotations, root = solve_poses(SKELETON, targets, REACH)
     positions, _ = world_transforms(SKELETON, rotations, root)
     for side, name in enumerate("lr"):
         knee = rotations[:, SKELETON.index(f"{name}_knee")]
@@ -69,7 +69,7 @@ def test_knees_are_hinges_that_bend_backward_and_point_forward() -> None:
 def test_feet_out_of_reach_pull_the_root() -> None:
     targets = random_targets(200, 3)
     targets.pelvis[:, 1] += 0.3
-    rotations, root = solve(SKELETON, targets, REACH)
+    rotations, root = solve_poses(SKELETON, targets, REACH)
     assert (root[:, 1] < targets.pelvis[:, 1] - 0.1).all()
     positions, _ = world_transforms(SKELETON, rotations, root)
     for side, name in enumerate("lr"):
@@ -91,7 +91,7 @@ def test_a_pinned_palm_is_reached_by_bending(side: int) -> None:
     targets.wrists[:, side] = targets.shoulders[:, side] * [1, 0, 1] + [0, 0.05, 0]
     targets.pinned[:, side] = 1.0
     targets.chest[:] = lean
-    positions, world = world_transforms(SKELETON, *solve(SKELETON, targets, REACH))
+    positions, world = world_transforms(SKELETON, *solve_poses(SKELETON, targets, REACH))
     wrist = SKELETON.index(f"{'lr'[side]}_radiocarpal")
     assert np.linalg.norm(positions[:, wrist] - targets.wrists[:, side], axis=1).max() < 1e-4
     assert quat.angle_between(world[:, wrist], targets.hand_rotation[:, side]).max() < 1e-6
@@ -100,7 +100,7 @@ def test_a_pinned_palm_is_reached_by_bending(side: int) -> None:
 def test_legs_agree_with_numerical_optimisation() -> None:
     """Hip angles and knee found by a general minimiser for the same ankle and the same knee direction."""
     targets = random_targets(24, 5)
-    rotations, root = solve(SKELETON, targets, REACH)
+    rotations, root = solve_poses(SKELETON, targets, REACH)
     positions, _ = world_transforms(SKELETON, rotations, root)
     thigh, shank = (SKELETON.offsets[SKELETON.index(n)] for n in ("l_knee", "l_talocrural"))
     for f in range(24):

@@ -12,7 +12,7 @@ from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 from test_ik_full_body import REACH, random_targets
 
-from dancetutor_cli.dance.ik.full_body import Targets, solve
+from dancetutor_cli.dance.ik.full_body import Targets, solve_poses
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 
@@ -89,7 +89,7 @@ def optimum(targets: Targets, f: int, root: np.ndarray, start: np.ndarray) -> di
 @pytest.fixture(scope="module")
 def both() -> tuple[Targets, list[dict[str, np.ndarray]], list[dict[str, np.ndarray]]]:
     targets = random_targets(POSES, 11)
-    rotations, root = solve(SKELETON, targets, REACH)
+    rotations, root = solve_poses(SKELETON, targets, REACH)
     positions, _ = world_transforms(SKELETON, rotations, root)
     ours = [dict(zip(SKELETON.names, p, strict=True)) for p in positions]
     start = np.zeros(3 * len(BALLS) + len(HINGES))

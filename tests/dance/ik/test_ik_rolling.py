@@ -7,7 +7,7 @@ import pytest
 
 from dancetutor_cli.dance.foot_path import Feet, FootPath
 from dancetutor_cli.dance.ik.ankles import may_roll, rolled_soles
-from dancetutor_cli.dance.ik.full_body import Targets, solve
+from dancetutor_cli.dance.ik.full_body import Targets, solve_poses
 from dancetutor_cli.dance.motion import Contact
 from dancetutor_cli.dance.plan import FootTrack, Pivot, Plan, Step
 from dancetutor_cli.dance.rig import quaternion as quat
@@ -63,7 +63,7 @@ def wide(side: int, up: float = 0.0) -> tuple[Feet, Targets, Poses]:
     pelvis = (0.0, 0.66, 0.0)
     feet = stand(side, ((0.60, -0.60)[side], 0.05), pelvis, up)
     targets = asked(feet, pelvis)
-    return feet, targets, solve(SKELETON, targets, REACH, 0.0)
+    return feet, targets, solve_poses(SKELETON, targets, REACH, 0.0)
 
 
 @pytest.mark.parametrize("side", [0, 1])
@@ -74,7 +74,7 @@ def test_a_foot_far_out_stands_on_its_inner_edge_until_the_body_comes(side: int,
     rolled = rolled_soles(SKELETON, plan_of(), (TIME, feet, targets, flat), PRESSING)
     assert rolled is not None
     np.testing.assert_array_equal(rolled.soles[:, 1 - side], targets.soles[:, 1 - side])
-    poses = solve(SKELETON, rolled, REACH, 0.0)
+    poses = solve_poses(SKELETON, rolled, REACH, 0.0)
     assert past(poses, side) < 1.0
     before, after = soles(flat, side), soles(poses, side)
     inner, outer = [0, 2], [1, 3]  # heel and ball
@@ -97,24 +97,24 @@ def test_a_heel_rises_over_a_ball_that_stays() -> None:
     pelvis = (0.0, 0.66, 0.05)
     feet = stand(0, (0.10, 0.10), pelvis)
     targets = asked(feet, pelvis)
-    flat = solve(SKELETON, targets, REACH, 0.0)
+    flat = solve_poses(SKELETON, targets, REACH, 0.0)
     assert past(flat, 0) > 2.0
     rolled = rolled_soles(SKELETON, plan_of(), (TIME, feet, targets, flat), FREE)
     assert rolled is not None
-    poses = solve(SKELETON, rolled, REACH, 0.0)
+    poses = solve_poses(SKELETON, rolled, REACH, 0.0)
     assert past(poses, 0) < 1.0
     assert soles(poses, 0)[:2, 1].min() > 0.005
     np.testing.assert_allclose(soles(poses, 0)[2:], soles(flat, 0)[2:], atol=2e-3)
     pressed = rolled_soles(SKELETON, plan_of(), (TIME, feet, targets, flat), PRESSING)
     assert pressed is not None  # a heel that presses a panel stays down
-    assert soles(solve(SKELETON, pressed, REACH, 0.0), 0)[:2, 1].min() < 0.002
+    assert soles(solve_poses(SKELETON, pressed, REACH, 0.0), 0)[:2, 1].min() < 0.002
 
 
 def test_nothing_is_asked_for_where_ankles_are_well() -> None:
     pelvis = (0.0, 0.80, 0.0)
     feet = stand(0, (0.12, 0.08), pelvis)
     targets = asked(feet, pelvis)
-    flat = solve(SKELETON, targets, REACH, 0.0)
+    flat = solve_poses(SKELETON, targets, REACH, 0.0)
     assert rolled_soles(SKELETON, plan_of(), (TIME, feet, targets, flat), FREE) is None
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dancetutor_cli.dance.clearance import evenness, risen, travel_share
+from dancetutor_cli.dance.clearance import evenness, rise_share, travel_share
 from dancetutor_cli.dance.settings import default_settings
 
 STEP = default_settings().step
@@ -39,9 +39,9 @@ def test_only_quick_steps_are_even() -> None:
 
 def test_an_even_foot_is_still_where_it_is_low() -> None:
     """Lower than a fourteenth of its height it has not begun to go, or has arrived, but for a hundredth of its way."""
-    low = risen(TIMES, STEP, 1.0) < 1.0 / 14.0
+    low = rise_share(TIMES, STEP, 1.0) < 1.0 / 14.0
     way = travel_share(TIMES, STEP, 1.0)
     assert low[0] and low[-1] and not low[1000]
     assert np.minimum(way, 1.0 - way)[low].max() < 0.01
-    assert risen(TIMES, STEP, 1.0).max() <= 1.0 + 1e-9
-    assert (risen(np.array([0.03, 0.97]), STEP, 1.0) > risen(np.array([0.03, 0.97]), STEP)).all()
+    assert rise_share(TIMES, STEP, 1.0).max() <= 1.0 + 1e-9
+    assert (rise_share(np.array([0.03, 0.97]), STEP, 1.0) > rise_share(np.array([0.03, 0.97]), STEP)).all()

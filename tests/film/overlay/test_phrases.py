@@ -81,7 +81,7 @@ def danced(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
     assert solved.play is not None
     second = solved.play.rows.second
     whole = Cut(float(second[0]) - 1.0, float(second[-1]) + 0.5)
-    return Danced(solved, perform(some, wanted, 1.0).motions(whole)[0].motion)
+    return Danced(solved, perform(some, wanted, 1.0).bake(whole)[0].motion)
 
 
 def passes(motion: Motion, second: float, foot: int) -> float | None:
@@ -159,7 +159,7 @@ def test_calls_of_half_turns_say_which_foot_comes_down_where(tmp_path: Path) -> 
     style = CallStyle(callout_words(ENGLISH), Ahead(0.5))
     calls = {round(c.second, 3): c for c in callouts_of(CalloutSubject(solved.chart, pad, tuple), play, style, NONE)}
     second = play.rows.second
-    motion = perform(some, wanted, 1.0).motions(Cut(float(second[0]) - 1.0, float(second[-1]) + 0.5))[0].motion
+    motion = perform(some, wanted, 1.0).bake(Cut(float(second[0]) - 1.0, float(second[-1]) + 0.5))[0].motion
     told = set()
     for row in (np.flatnonzero(half_turned(play.facing)) + 1).tolist():
         (foot,) = {0, 1} & set(play.limb[row].tolist())

@@ -54,7 +54,7 @@ def test_feet_that_stand_aslant_have_their_middle_on_the_panel(tmp_path: Path) -
     (solved,) = some = solve(wanted)
     assert solved.play is not None and solved.pad is not None
     second, limb = solved.play.rows.second, solved.play.limb
-    motion = perform(some, wanted, 1.0).motions(Cut(-0.5, float(second[-1]) + 0.3))[0].motion
+    motion = perform(some, wanted, 1.0).bake(Cut(-0.5, float(second[-1]) + 0.3))[0].motion
     scene, aslant, centre = Scene(load_dancer(), solved.pad), 0, np.array(solved.pad.centre)
     joints = joint_matrices(motion.skeleton, *sample(motion, second + 0.02))
     for row in range(len(second)):
