@@ -128,7 +128,13 @@ def film_key(request: FilmRequest, subject: FilmSubject, encoding: Encoding) -> 
 
 
 def _findings(path: Path) -> str:
-    """Return a fingerprint of the settings for findings: dancetutor.yaml and the files that it extends."""
+    """Return a fingerprint of the settings for findings: dancetutor.yaml and the files that it extends; "" without one.
+
+    The settings of the program itself are part of its hash.
+    """
+    settings = find_settings_file(path.absolute().parent)
+    if settings is None:
+        return ""
     from dancetutor_cli.lint.configuration import load_configuration
 
-    return load_configuration(find_settings_file(path.absolute().parent), found=True).settings.fingerprint()
+    return load_configuration(settings, found=True).settings.fingerprint()
