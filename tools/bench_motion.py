@@ -7,7 +7,8 @@ import time
 import numpy as np
 
 from dancetutor_cli.chart.reader import load
-from dancetutor_cli.dance.bake import bake, bake_plan, plan_dance
+from dancetutor_cli.dance.bake import bake, bake_plan
+from dancetutor_cli.dance.footwork.planner import plan_dance
 from dancetutor_cli.dance.ik import full_body as ik
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.feet.pads import load_pad

@@ -189,9 +189,9 @@ def _everything(paths: tuple[Path, ...] | list[Path]) -> list[Wanted]:
 def measure(wanted: Wanted, preset: str | None, bar: bool, length: float = 0.0) -> Measured:
     """Bake one chart, or a section so many seconds long, and report on it; runs in a worker process."""
     from dancetutor_cli.chart.selection import Selection
-    from dancetutor_cli.dance.bake import mines_of
     from dancetutor_cli.dance.motion import Cut
     from dancetutor_cli.dance.performance import perform, solve
+    from dancetutor_cli.dance.quality.contact import mines_of
     from dancetutor_cli.dance.quality.report import report
     from dancetutor_cli.dance.request import DanceRequest
     from dancetutor_cli.reports.motion_report import as_json

@@ -190,7 +190,7 @@ def _write(dance: AnimatedDancer, places: _Places) -> None:
     warn(dance.notes(places.output.suffix.lower() != MOVES or measured))
     click.echo(f"{places.output}: {write_dancer(places.output, dance)}, {dance.label}")
     if measured:
-        from dancetutor_cli.dance.bake import mines_of
+        from dancetutor_cli.dance.quality.contact import mines_of
         from dancetutor_cli.dance.quality.report import report as report_of
         from dancetutor_cli.dance.quality.report import with_distances
 

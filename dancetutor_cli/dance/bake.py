@@ -1,18 +1,17 @@
-"""The order of the work of a bake: plan, trajectory, inverse kinematics, layers, ragdoll, hair."""
+"""The order of the work of a bake: trajectory, inverse kinematics, layers, ragdoll, hair."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypedDict, Unpack
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
-from dancetutor_cli.chart.names import TICKS_PER_BEAT
-from dancetutor_cli.dance.context import Context, bar_of, context_of, holding, panels_on_ground
+from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.face import add_face, mood_at, peeks_at, with_peeks
 from dancetutor_cli.dance.foot_path import Feet, both_feet
-from dancetutor_cli.dance.footwork.planner import plan_footwork
+from dancetutor_cli.dance.footwork.planner import Manner, plan_dance
 from dancetutor_cli.dance.ik.ankles import ease_ankles, rolled_soles
 from dancetutor_cli.dance.ik.full_body import solve_poses
 from dancetutor_cli.dance.ik.targets import FreeHands, free_hands, translated
@@ -20,56 +19,23 @@ from dancetutor_cli.dance.keys import Keys, doubtful, key_times, refined
 from dancetutor_cli.dance.layers import Activity, add_fingers, add_layers, curls, glances_at, hand_use, look
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics.hair import add_hair
-from dancetutor_cli.dance.pieces import (
-    BakedPiece,
-    Piece,
-    PieceRunner,
-    RagdollStyle,
-    in_turn,
-    joined,
-    needed_pieces,
-    pieces_of,
-)
+from dancetutor_cli.dance.pieces import BakedPiece, Piece, PieceRunner, RagdollStyle, cut, in_turn, pieces_of
 from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.rig.body import mass_of
-from dancetutor_cli.dance.settings import MotionSettings, SettingsCourse, Span, default_settings, state_weights
-from dancetutor_cli.dance.settings_feet import WalkSettings
+from dancetutor_cli.dance.settings import Span, state_weights
 from dancetutor_cli.dance.settle import heels_may_rise, settle, targets_at
 from dancetutor_cli.dance.smoothing import sample_path
 from dancetutor_cli.dance.trajectory.posture import Trajectory, lift_side
 from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.dance.waits import waiting_at
-from dancetutor_cli.feet.unplayable import DroppedNote, without_unplayable
-from dancetutor_cli.run.errors import DancetutorError
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.timing import Timing
     from dancetutor_cli.feet.pads import Pad
     from dancetutor_cli.feet.play import Play
 
-BEATS_AFTER = 16  # beats after the last row for which the dancer still moves with the music
 CORRECTIONS = 6  # rounds of moving the body until its centre of mass is on its path
 REFINEMENTS = 2  # rounds of adding keys half-way between others
-
-
-class Manner(TypedDict, total=False):
-    """How a play is danced.
-
-    settings : the numbers of the motion, or how they change over the song; by default the numbers of
-    `configs/motion.yaml`
-    bar : whether the dancer holds the bar behind the pad; gait : the way she walks on and off, as for `load_gait`
-    sides : the side from which she comes and the side to which she goes, 0 left or 1 right, if another dancer is beside
-    her
-    person : as in `Context`
-    dropped : the notes that are not played because no limb is free, with reasons, if the caller has decided it
-    """
-
-    settings: MotionSettings | SettingsCourse | None
-    bar: bool
-    gait: str
-    sides: tuple[int, int] | None
-    person: int
-    dropped: tuple[DroppedNote, ...]
 
 
 def bake(
@@ -104,41 +70,6 @@ def bake(
     return bake_plan(plan, context, fps, section)
 
 
-def plan_dance(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> tuple[Plan, Context]:
-    """Return the plan of a play, and the context in which it is danced. Arguments as in `bake`."""
-    given, bar = manner.get("settings") or default_settings(), manner.get("bar", False)
-    course = given if isinstance(given, SettingsCourse) else SettingsCourse((given,), ())
-    rail = bar_of(pad, course.states[0].bar) if bar else None
-    if bar:
-        course = replace(course, states=tuple(map(holding, course.states)))
-    context = context_of(pad, course.states[0], _beats(timing, play), rail)
-    changes = course if course.changes else None
-    context = replace(context, sides=manner.get("sides"), person=manner.get("person", 0), course=changes)
-
-    def second(tick: int) -> float:
-        return float(timing.seconds(np.array([tick], dtype=np.int64))[0])
-
-    play, dropped = without_unplayable(play, pad, manner.get("dropped", ()))
-    plan = replace(plan_footwork(play, second, manner.get("gait", "flat"), context), dropped=dropped)
-    if rail is None:
-        return plan, context
-    from dancetutor_cli.dance.grips import grips_of
-
-    return grips_of(plan, _standing(plan, context.settings.walk), context), context
-
-
-def _standing(plan: Plan, walk: WalkSettings) -> tuple[float, float]:
-    """Return the second at which the dancer has arrived and the second at which she leaves."""
-    arrived = max((w.end for w in plan.walks if w.end < plan.first), default=plan.first - walk.lead_in)
-    return arrived, min((w.start for w in plan.walks if w.start > plan.last), default=plan.last + walk.lead_out)
-
-
-def mines_of(play: Play, pad: Pad) -> Array:
-    """Return the second and the place (x, z) in the world of every mine of a play, (m, 3), for the quality report."""
-    row, column = np.nonzero(play.rows.mines)
-    return np.column_stack((play.rows.second[row], panels_on_ground(pad)[column]))
-
-
 def bake_plan(
     plan: Plan, context: Context, fps: float, section: Span | None = None, run: PieceRunner = in_turn
 ) -> Motion:
@@ -148,17 +79,6 @@ def bake_plan(
     """
     pieces = pieces_of(plan, context, fps)
     return cut(pieces, section or (pieces[0].kept_span[0], pieces[-1].kept_span[1]), run).motion
-
-
-def cut(pieces: list[Piece], section: Span, run: PieceRunner = in_turn) -> BakedPiece:
-    """Bake a section (seconds) of the dance of all these pieces. Only the pieces that it needs are baked."""
-    start, end = section
-    if not start < end:
-        raise DancetutorError(
-            f"the section from {start:.3f} s to {end:.3f} s is empty; its start must come before its end"
-        )
-    some = pieces[needed_pieces(pieces, start, end)]
-    return joined(some, list(run(bake_piece, some)), start, end)
 
 
 def bake_piece(piece: Piece) -> BakedPiece:
@@ -278,11 +198,3 @@ def pose_body(
     add_face(skeleton, poses, at, (mood, peeks, plan), context)
     add_fingers(skeleton, poses, curls(at + context.phase, hands, context.settings.fingers))
     return poses
-
-
-def _beats(timing: Timing, play: Play) -> tuple[float, ...]:
-    """Return the seconds of all beats from the first measure until `BEATS_AFTER` beats after the last row."""
-    if not len(play.rows):
-        return ()
-    ticks = np.arange(0, int(play.rows.tick[-1]) + BEATS_AFTER * TICKS_PER_BEAT, TICKS_PER_BEAT, dtype=np.int64)
-    return tuple(timing.seconds(ticks).tolist())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dancetutor_cli.chart.players import ONE_PAD, OWN_PADS
-from dancetutor_cli.dance.bake import Manner, bake_piece, cut, plan_dance
 from dancetutor_cli.dance.context import PANEL, panels_on_ground
 from dancetutor_cli.dance.ends import (
     entrance_of,
@@ -22,6 +21,7 @@ from dancetutor_cli.dance.ends import (
     with_entrance,
     with_exit,
 )
+from dancetutor_cli.dance.footwork.planner import Manner, plan_dance
 from dancetutor_cli.dance.footwork.turning import leading_foot
 from dancetutor_cli.dance.motion import Cut, Motion
 from dancetutor_cli.dance.pieces import (
@@ -29,6 +29,8 @@ from dancetutor_cli.dance.pieces import (
     Piece,
     PieceRunner,
     RagdollStyle,
+    cut,
+    in_processes,
     in_turn,
     pieces_of,
     whole_span,
@@ -42,7 +44,6 @@ from dancetutor_cli.feet.play import Play, prepare
 from dancetutor_cli.feet.solved import Solved, solve_song
 from dancetutor_cli.feet.unplayable import without_unplayable
 from dancetutor_cli.run.errors import DancetutorError, UsageError
-from dancetutor_cli.run.pool import in_order
 
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart
@@ -133,7 +134,7 @@ class Performance:
 
 
 def _one(run: PieceRunner, piece: Piece) -> Motion:
-    return next(iter(run(bake_piece, [piece]))).motion
+    return next(iter(run([piece]))).motion
 
 
 def solve(request: DanceRequest, chart: ChartChoice | None = None) -> tuple[Solved, ...]:
@@ -218,14 +219,7 @@ def as_heard(play: Play, timing: Timing) -> Play:
 
 def piece_runner(jobs: int = 1) -> PieceRunner:
     """Return a runner that bakes pieces in up to `jobs` processes, in order, and reads kept pieces from the store."""
-    return with_store(in_turn if jobs <= 1 else partial(_pooled, jobs))
-
-
-def _pooled(jobs: int, function: Callable[[Piece], BakedPiece], pieces: Sequence[Piece]) -> Iterator[BakedPiece]:
-    if len(pieces) == 1:
-        yield function(pieces[0])
-        return
-    yield from in_order(jobs, function, [(piece,) for piece in pieces])
+    return with_store(in_turn if jobs <= 1 else partial(in_processes, jobs))
 
 
 # Charts for two dancers: the pad under both, and the place of each dancer on it.

@@ -21,6 +21,8 @@ from dancetutor_cli.dance.settings import Span
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.unplayable import dropped_notes_message
+from dancetutor_cli.run.errors import DancetutorError
+from dancetutor_cli.run.pool import in_order
 from dancetutor_cli.run.stored_files import StoredFiles, fingerprint, program_stamp
 from dancetutor_cli.run.trust import kept_folder
 
@@ -78,12 +80,21 @@ class BakedPiece:
     distances: Distances | None = None
 
 
-PieceRunner = Callable[[Callable[[Piece], BakedPiece], Sequence[Piece]], Iterable[BakedPiece]]
+PieceRunner = Callable[[Sequence[Piece]], Iterable[BakedPiece]]
 
 
-def in_turn(function: Callable[[Piece], BakedPiece], pieces: Sequence[Piece]) -> Iterable[BakedPiece]:
+def in_turn(pieces: Sequence[Piece]) -> Iterable[BakedPiece]:
     """Bake one piece after the other in this process."""
-    return map(function, pieces)
+    from dancetutor_cli.dance.bake import bake_piece  # kept pieces need none of its modules
+
+    return map(bake_piece, pieces)
+
+
+def in_processes(jobs: int, pieces: Sequence[Piece]) -> Iterable[BakedPiece]:
+    """Bake the pieces in up to `jobs` processes, and return them in their order."""
+    from dancetutor_cli.dance.bake import bake_piece
+
+    return in_turn(pieces) if len(pieces) == 1 else in_order(jobs, bake_piece, [(piece,) for piece in pieces])
 
 
 def whole_span(plan: Plan, context: Context) -> Span:
@@ -181,6 +192,17 @@ def needed_pieces(pieces: Sequence[Piece], start: float, end: float) -> slice:
     return slice(touched[0], touched[-1] + 1)
 
 
+def cut(pieces: list[Piece], section: Span, run: PieceRunner = in_turn) -> BakedPiece:
+    """Bake a section (seconds) of the dance of all these pieces. Only the pieces that it needs are baked."""
+    start, end = section
+    if not start < end:
+        raise DancetutorError(
+            f"the section from {start:.3f} s to {end:.3f} s is empty; its start must come before its end"
+        )
+    some = pieces[needed_pieces(pieces, start, end)]
+    return joined(some, list(run(some)), start, end)
+
+
 def joined(pieces: Sequence[Piece], done: Sequence[BakedPiece], start: float, end: float) -> BakedPiece:
     """Join neighbouring pieces into one motion from `start` to `end`, seconds. Quaternions never change their sign."""
     parts: list[tuple[Array, Array, Array]] = []
@@ -253,7 +275,6 @@ def _distances(done: Sequence[BakedPiece], start: float, end: float) -> Distance
 
 LARGEST = 512_000_000  # bytes of the store; above it, the oldest files are deleted
 _ARRAYS = ("times", "rotations", "root")
-Function = Callable[[Piece], BakedPiece]
 
 
 def with_store(run: PieceRunner) -> PieceRunner:
@@ -262,13 +283,11 @@ def with_store(run: PieceRunner) -> PieceRunner:
     return run if folder is None else partial(_run_or_read, StoredFiles(folder, largest=LARGEST), run)
 
 
-def _run_or_read(
-    files: StoredFiles, run: PieceRunner, function: Function, pieces: Sequence[Piece]
-) -> Iterator[BakedPiece]:
+def _run_or_read(files: StoredFiles, run: PieceRunner, pieces: Sequence[Piece]) -> Iterator[BakedPiece]:
     names = [f"{fingerprint(piece, program_stamp())}.npz" for piece in pieces]
     found = [_read(files, name, piece) for name, piece in zip(names, pieces, strict=True)]
     missing = [piece for piece, one in zip(pieces, found, strict=True) if one is None]
-    made = iter(run(function, missing) if missing else ())
+    made = iter(run(missing) if missing else ())
     for name, piece, one in zip(names, pieces, found, strict=True):
         if one is None:
             one = next(made)

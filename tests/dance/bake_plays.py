@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from dancetutor_cli.dance.bake import plan_dance
 from dancetutor_cli.dance.context import Context, context_of
+from dancetutor_cli.dance.footwork.planner import plan_dance
 from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.settings import default_settings
 from dancetutor_cli.feet.limbs import Limb, Part

@@ -9,7 +9,8 @@ import pytest
 from bake_plays import MEDLEY, chart, pad, play
 
 from dancetutor_cli.dance import quadratic
-from dancetutor_cli.dance.bake import bake, bake_plan, plan_dance
+from dancetutor_cli.dance.bake import bake, bake_plan
+from dancetutor_cli.dance.footwork.planner import plan_dance
 from dancetutor_cli.dance.pieces import whole_span
 from dancetutor_cli.dance.quadratic import BandedLeastSquares, ConvergenceError, Limits, Solution, solve_surely
 from dancetutor_cli.dance.quality.report import report

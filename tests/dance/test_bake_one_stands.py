@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from bake_plays import Event, L, R, chart, pad, plan_of, play, stream
 
-from dancetutor_cli.dance.bake import bake, mines_of
+from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.foot_path import foot_path
 from dancetutor_cli.dance.plan import LEAST_FLIGHT, Hover, Pivot, Plan, airborne
+from dancetutor_cli.dance.quality.contact import mines_of
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.settings import default_settings
 from dancetutor_cli.feet.limbs import Part

@@ -12,11 +12,11 @@ from bake_plays import MEDLEY, chart, pad, plan_of, play, stream
 
 from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.dance import pieces
-from dancetutor_cli.dance.bake import bake, bake_plan, plan_dance
+from dancetutor_cli.dance.bake import bake, bake_plan
 from dancetutor_cli.dance.foot_path import foot_path, shoe_path
+from dancetutor_cli.dance.footwork.planner import plan_dance
 from dancetutor_cli.dance.motion import Motion
-from dancetutor_cli.dance.performance import _pooled
-from dancetutor_cli.dance.pieces import piece_ends, trimmed
+from dancetutor_cli.dance.pieces import in_processes, piece_ends, trimmed
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.settings import default_settings
@@ -86,7 +86,7 @@ def test_pieces_end_where_nobody_moves(short: None) -> None:
 
 def test_any_number_of_processes_gives_the_same_bytes(short: None) -> None:
     plan, context = plan_dance(chart().timing, play(EVENTS), pad())
-    alone, shared = (bake_plan(plan, context, 60.0, run=partial(_pooled, jobs)) for jobs in (1, 2))
+    alone, shared = (bake_plan(plan, context, 60.0, run=partial(in_processes, jobs)) for jobs in (1, 2))
     assert alone.rotations.tobytes() == shared.rotations.tobytes()
     assert alone.root.tobytes() == shared.root.tobytes() and alone.times.tobytes() == shared.times.tobytes()
 

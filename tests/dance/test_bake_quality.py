@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from bake_plays import MEDLEY, RH, L, R, chart, pad, play, stream
 
-from dancetutor_cli.dance.bake import bake, mines_of
+from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.quality.contact import mines_of
 from dancetutor_cli.dance.quality.figures import MotionReport
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.rig import quaternion as quat

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from bake_plays import MEDLEY, chart, pad, play, stream
 
-from dancetutor_cli.dance.bake import plan_dance
 from dancetutor_cli.dance.foot_path import both_feet
+from dancetutor_cli.dance.footwork.planner import plan_dance
 from dancetutor_cli.dance.settle import ROUNDS_WITH_PALMS, SETTLE_ROUNDS, SettledTrajectory, settle
 
 

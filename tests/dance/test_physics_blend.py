@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.dance.bake import bake_plan, cut, plan_dance
+from dancetutor_cli.dance.bake import bake_plan
+from dancetutor_cli.dance.footwork.planner import plan_dance
 from dancetutor_cli.dance.motion import Distances, Motion, sample
 from dancetutor_cli.dance.physics.blend import Blend, load_choice, mean_distances
 from dancetutor_cli.dance.physics.pipeline import RagdollOptions, through_ragdoll
 from dancetutor_cli.dance.physics.style import load_style
-from dancetutor_cli.dance.pieces import Piece, RagdollStyle, in_turn, pieces_of
+from dancetutor_cli.dance.pieces import Piece, RagdollStyle, cut, in_turn, pieces_of
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig.body import place, sole_points, world_transforms

@@ -9,8 +9,9 @@ import pytest
 from bake_mirror import mirrored_motion
 
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.dance.bake import bake_piece, plan_dance
+from dancetutor_cli.dance.bake import bake_piece
 from dancetutor_cli.dance.context import Context
+from dancetutor_cli.dance.footwork.planner import plan_dance
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.performance import perform, solve
 from dancetutor_cli.dance.physics.blend import Blend

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import TYPE_CHECKING, TypedDict, Unpack
 
 import numpy as np
 
+from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.dance.clearance import SHARES, Way, detour, evenness
-from dancetutor_cli.dance.context import Context
+from dancetutor_cli.dance.context import Context, bar_of, context_of, holding
 from dancetutor_cli.dance.foot_path import shoe_path
 from dancetutor_cli.dance.footwork.footfalls import Stand, current_stand
 from dancetutor_cli.dance.footwork.footing import SHORTEST_SWING, Footing, Proposal, Row, hold, pair, press, pressed_by
@@ -28,10 +30,17 @@ from dancetutor_cli.dance.footwork.walks import (
 )
 from dancetutor_cli.dance.motion import Contact
 from dancetutor_cli.dance.plan import STRAIGHT, Bulge, FootTrack, Jump, Move, Plan, Press, Shake, Step, Swing, Turn
+from dancetutor_cli.dance.settings import MotionSettings, SettingsCourse, default_settings
+from dancetutor_cli.dance.settings_feet import WalkSettings
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play, StepKind
+from dancetutor_cli.feet.unplayable import DroppedNote, without_unplayable
 from dancetutor_cli.run.errors import DancetutorError
+
+if TYPE_CHECKING:
+    from dancetutor_cli.chart.timing import Timing
+    from dancetutor_cli.feet.pads import Pad
 
 # From a play to moves, row by row. The planner calls the rules for proposals, and only the planner applies them.
 
@@ -280,3 +289,65 @@ def plan_footwork(play: Play, second: Callable[[int], float], gait: str, context
     mines = play.rows.second[play.rows.mines.any(axis=1)]
     plan = with_walks(plan, mines, gait, context)
     return with_shakes(plan, leg_shakes(plan, mines, context))
+
+
+# The plan of a whole dance, and its context.
+
+BEATS_AFTER = 16  # beats after the last row for which the dancer still moves with the music
+
+
+class Manner(TypedDict, total=False):
+    """How a play is danced.
+
+    settings : the numbers of the motion, or how they change over the song; by default the numbers of
+    `configs/motion.yaml`
+    bar : whether the dancer holds the bar behind the pad; gait : the way she walks on and off, as for `load_gait`
+    sides : the side from which she comes and the side to which she goes, 0 left or 1 right, if another dancer is beside
+    her
+    person : as in `Context`
+    dropped : the notes that are not played because no limb is free, with reasons, if the caller has decided it
+    """
+
+    settings: MotionSettings | SettingsCourse | None
+    bar: bool
+    gait: str
+    sides: tuple[int, int] | None
+    person: int
+    dropped: tuple[DroppedNote, ...]
+
+
+def plan_dance(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -> tuple[Plan, Context]:
+    """Return the plan of a play, and the context in which it is danced. Arguments as in `dance.bake.bake`."""
+    given, bar = manner.get("settings") or default_settings(), manner.get("bar", False)
+    course = given if isinstance(given, SettingsCourse) else SettingsCourse((given,), ())
+    rail = bar_of(pad, course.states[0].bar) if bar else None
+    if bar:
+        course = replace(course, states=tuple(map(holding, course.states)))
+    context = context_of(pad, course.states[0], _beats(timing, play), rail)
+    changes = course if course.changes else None
+    context = replace(context, sides=manner.get("sides"), person=manner.get("person", 0), course=changes)
+
+    def second(tick: int) -> float:
+        return float(timing.seconds(np.array([tick], dtype=np.int64))[0])
+
+    play, dropped = without_unplayable(play, pad, manner.get("dropped", ()))
+    plan = replace(plan_footwork(play, second, manner.get("gait", "flat"), context), dropped=dropped)
+    if rail is None:
+        return plan, context
+    from dancetutor_cli.dance.grips import grips_of
+
+    return grips_of(plan, _standing(plan, context.settings.walk), context), context
+
+
+def _standing(plan: Plan, walk: WalkSettings) -> tuple[float, float]:
+    """Return the second at which the dancer has arrived and the second at which she leaves."""
+    arrived = max((w.end for w in plan.walks if w.end < plan.first), default=plan.first - walk.lead_in)
+    return arrived, min((w.start for w in plan.walks if w.start > plan.last), default=plan.last + walk.lead_out)
+
+
+def _beats(timing: Timing, play: Play) -> tuple[float, ...]:
+    """Return the seconds of all beats from the first measure until `BEATS_AFTER` beats after the last row."""
+    if not len(play.rows):
+        return ()
+    ticks = np.arange(0, int(play.rows.tick[-1]) + BEATS_AFTER * TICKS_PER_BEAT, TICKS_PER_BEAT, dtype=np.int64)
+    return tuple(timing.seconds(ticks).tolist())

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.dance.context import HALF_PANEL, HOLD_GRACE
+from dancetutor_cli.dance.context import HALF_PANEL, HOLD_GRACE, panels_on_ground
 from dancetutor_cli.dance.motion import Contact, Motion, sample
 from dancetutor_cli.dance.quality.figures import GROUND, SKATE_HEIGHT, SKATE_SPEED, Body, Figure, over_ground
 from dancetutor_cli.dance.rig import quaternion as quat
@@ -25,6 +26,10 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.play import StepKind, runs
+
+if TYPE_CHECKING:
+    from dancetutor_cli.feet.pads import Pad
+    from dancetutor_cli.feet.play import Play
 
 # The contact error: when each limb reaches its panel, compared with the time of the note.
 
@@ -192,6 +197,12 @@ def deepest(motion: Motion) -> float:
             over = over_ground(place(points, positions, world), motion.ground)
             low = min(low, float(over[..., 1].min()))
     return -low
+
+
+def mines_of(play: Play, pad: Pad) -> Array:
+    """Return the second and the place (x, z) in the world of every mine of a play, (m, 3), for the quality report."""
+    row, column = np.nonzero(play.rows.mines)
+    return np.column_stack((play.rows.second[row], panels_on_ground(pad)[column]))
 
 
 def feet_on_mines(motion: Motion, mines: Array) -> NDArray[np.int8]:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.dance.bake import mines_of
 from dancetutor_cli.dance.motion import Motion, shifted
 from dancetutor_cli.dance.performance import (
     as_heard,
@@ -22,7 +21,7 @@ from dancetutor_cli.dance.performance import (
     playable,
     solve,
 )
-from dancetutor_cli.dance.quality.contact import feet_on_mines, mine_messages
+from dancetutor_cli.dance.quality.contact import feet_on_mines, mine_messages, mines_of
 from dancetutor_cli.film.notes import OnMine
 from dancetutor_cli.film.work.request import FilmRequest, FilmSubject
 from dancetutor_cli.run.errors import UsageError

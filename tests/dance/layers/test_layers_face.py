@@ -7,8 +7,9 @@ import pytest
 from bake_mirror import mirrored_play
 from bake_plays import Event, L, R, chart, pad, play
 
-from dancetutor_cli.dance.bake import bake, plan_dance
+from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.face import peeks_at
+from dancetutor_cli.dance.footwork.planner import plan_dance
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
