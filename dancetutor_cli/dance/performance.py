@@ -145,8 +145,7 @@ def solve(request: DanceRequest, chart: ChartChoice | None = None) -> tuple[Solv
     if chart is None:
         check_request(request)
         chart = read_chart(request)
-    presets = {part.player: preset for part, preset in zip(chart.parts, chart.presets, strict=True)}
-    solved = tuple(solve_song(chart.song, chart.parts, lambda part: presets[part.player]))
+    solved = tuple(solve_song(chart.song, list(zip(chart.parts, chart.presets, strict=True))))
     for one in solved:
         if one.play is None or one.pad is None:
             raise no_pad(request, one.chart)

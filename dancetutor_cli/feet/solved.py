@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from dancetutor_cli.chart.model import Chart, Song
@@ -36,14 +36,16 @@ class Solved:
     problems: tuple[FeetProblem, ...] = ()
 
 
-def solve_song(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart], Preset]) -> Iterator[Solved]:
+def solve_song(song: Song, charts: Sequence[tuple[Chart, Preset]]) -> Iterator[Solved]:
     """Yield the charts of a song with the cheapest plays that keep the feet that people have set.
+
+    charts : each with the costs of its solver
 
     Contradictory feet are not kept: they are in `problems`, and the linter reports them.
     """
     feet = SongFeet(song)
     for first in range(0, len(charts), _AT_ONCE):
-        some = [(chart, preset_of(chart)) for chart in charts[first : first + _AT_ONCE]]
+        some = charts[first : first + _AT_ONCE]
         for (chart, preset), rows in zip(some, _rows(some), strict=True):
             overrides, ignores, problems = feet.author_feet(chart)
             pad = load_pad(chart.steps_type)

@@ -326,10 +326,11 @@ def load_song(task: AnalyzeTask) -> Song:
 
 def solve_selected(song: Song, charts: tuple[Chart, ...], task: AnalyzeTask) -> Iterator[ChartSubject]:
     """Yield each chart with its play; for a chart for two players, the part of each player."""
-    from dancetutor_cli.lint.subject import solved_charts
+    from dancetutor_cli.feet.solved import solve_song
+    from dancetutor_cli.lint.subject import subject_of
 
     parts = [part for chart in charts for part in task.selection.parts(chart)]
-    return solved_charts(song, parts, lambda part: preset_for(part, task.path, task.presets))
+    return map(subject_of, solve_song(song, [(part, preset_for(part, task.path, task.presets)) for part in parts]))
 
 
 def _warnings(song: Song, charts: tuple[ChartResult, ...]) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
@@ -274,10 +274,5 @@ def subject_of(solved: Solved) -> ChartSubject:
 
 
 def solved_chart(song: Song, chart: Chart, preset: Preset) -> ChartSubject:
-    """Return the subject of one chart, see `solved_charts`."""
-    return next(solved_charts(song, [chart], lambda _: preset))
-
-
-def solved_charts(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart], Preset]) -> Iterator[ChartSubject]:
-    """Yield the subjects of charts of a song, solved by `feet.solved.solve_song`."""
-    return map(subject_of, solve_song(song, charts, preset_of))
+    """Return the subject of one chart, solved by `feet.solved.solve_song`."""
+    return subject_of(next(solve_song(song, [(chart, preset)])))

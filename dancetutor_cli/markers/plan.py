@@ -35,7 +35,7 @@ def solve_charts(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart
     found = SolvedSong()
     padless = set()
     parts = [player_charts(chart) for chart in charts]
-    solved = solve_song(song, [*chain.from_iterable(parts)], preset_of)
+    solved = solve_song(song, [(part, preset_of(part)) for part in chain.from_iterable(parts)])
     for chart, players in zip(charts, parts, strict=True):
         feet = []
         for part, one in zip(players, solved, strict=False):  # the next players of the song

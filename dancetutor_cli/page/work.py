@@ -178,8 +178,7 @@ def _second_play(page: PageSubject) -> tuple[Solved, ...]:
     if wanted.lower().endswith(".json"):
         return (replace(one, play=read_play(Path(wanted), one.chart, one.play.rows)),)
     if wanted != NEXT:
-        preset = load_preset(wanted)
-        return tuple(solve_song(one.song, [one.chart], lambda _: preset))
+        return tuple(solve_song(one.song, [(one.chart, load_preset(wanted))]))
     found = alternatives(one.play.rows, one.pad, one.preset, 2, one.overrides)
     if len(found) < 2:
         raise UsageError(f"{path}: {one.chart.label}: there is no other way to play it")
