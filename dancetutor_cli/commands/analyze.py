@@ -268,10 +268,10 @@ def _run(run: LintRun, files: list[Source], options: AnalyzeOptions) -> int:
         from dancetutor_cli.commands.fix_option import fix_all
 
         run.open_baseline(first)
-        return fix_all(run, [run.task(path, data) for path, data in files], options)
+        return fix_all(run, run.tasks(files), options)
     with open_output(options.output_file) as output:
         if options.tech_counts is not None:
-            return report_tech_counts([run.task(path, data) for path, data in files], options, output)
+            return report_tech_counts(run.tasks(files), options, output)
         if options.compare is not None:
             check_comparison(options)
             if options.report_html is None:
@@ -284,12 +284,12 @@ def _lint(run: LintRun, files: list[Source], options: AnalyzeOptions, output: IO
     from dancetutor_cli.lint.run import analyze_all
 
     first = files[0][0]
-    run.open_baseline(first)
     view = options.view(output)
     silent = options.quiet or (view == "none" and not options.statistics)
+    run.open_baseline(first)
+    tasks = run.tasks(files)
     tally = Tally(run.fail_on(first), options.exit_zero, quiet=silent)
     pack = PackReport(options, run.has_baseline, len(files), view)
-    tasks = [run.task(path, data) for path, data in files]
     _check_ffmpeg(tasks)
     preset = next(tasks[0].presets.candidates()).name
     report = open_report(view, Output(output, preset=preset, files=len(tasks)))

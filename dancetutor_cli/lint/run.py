@@ -14,7 +14,6 @@ from dancetutor_cli.chart.pack_files import find_settings_file, places_of_feet
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.preset import PresetChoice, choice_of
 from dancetutor_cli.lint.analysis import AnalyzeTask, ResultOptions, analyze_files, failure_result
-from dancetutor_cli.lint.baseline import Baseline, Key, load_baseline
 from dancetutor_cli.lint.check import PackSyncs
 from dancetutor_cli.lint.configuration import (
     Configuration,
@@ -27,6 +26,7 @@ from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.run.errors import DancetutorError, plural
 
 if TYPE_CHECKING:
+    from dancetutor_cli.lint.baseline import Baseline, Key
     from dancetutor_cli.lint.results import ResultCache
 
 
@@ -112,6 +112,10 @@ class LintRun:
         settings, request = self.configuration(path).settings, self.request
         return AnalyzeTask(path, self.presets(path), request.selection, settings, data, **request.options())
 
+    def tasks(self, files: Iterable[tuple[Path, bytes | None]]) -> list[AnalyzeTask]:
+        """Return the task for each file, or for the bytes of standard input under its name."""
+        return [self.task(path, data) for path, data in files]
+
     def with_packs(self, results: Iterable[FileResult]) -> Iterator[FileResult]:
         """Yield the results, then one result for each pack with findings about its songs together."""
         packs = PackSyncs()
@@ -133,6 +137,8 @@ class LintRun:
         if where is None and self.request.update_baseline:
             where = Path("dancetutor-baseline.json")
         if where is not None:
+            from dancetutor_cli.lint.baseline import Baseline, load_baseline
+
             is_new = self.request.update_baseline and not where.exists()
             self._baseline = Baseline(where) if is_new else load_baseline(where)
 
