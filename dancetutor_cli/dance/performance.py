@@ -51,7 +51,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.dance.context import Context
     from dancetutor_cli.dance.physics.blend import Blend
     from dancetutor_cli.dance.plan import Plan
-    from dancetutor_cli.dance.request import DanceRequest
     from dancetutor_cli.feet.pads import Pad
 
 

@@ -17,8 +17,7 @@ from dancetutor_cli.lint.rule import ChartRule, FileRule, PackRule, PackSong, Re
 from dancetutor_cli.lint.rule_settings import Options, Settings
 
 if TYPE_CHECKING:
-    from dancetutor_cli.lint.findings import Finding, Sync
-    from dancetutor_cli.lint.rule_settings import Settings
+    from dancetutor_cli.lint.findings import Sync
     from dancetutor_cli.lint.subject import ChartSubject, FileSubject
 
 _AMBIGUITY = "DT207"

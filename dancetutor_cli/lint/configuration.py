@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from dancetutor_cli.chart.pack_files import SETTINGS_FILE, check_not_a_link_out
 from dancetutor_cli.feet.conditions import Condition, When, condition_of
@@ -17,10 +17,6 @@ from dancetutor_cli.run.errors import FileError, UsageError, choose_text
 from dancetutor_cli.run.reading import config_names, config_path, is_outside, is_regular, shown_key
 from dancetutor_cli.run.schema import Bounds, Keys, MarkedYaml, Names, Text, Texts, convert
 from dancetutor_cli.run.yaml_files import parse_value, read
-
-if TYPE_CHECKING:
-    pass
-
 
 FAIL_ON = ("error", "warning", "never")
 _MOST_EXTENDED = 16

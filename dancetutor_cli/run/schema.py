@@ -148,15 +148,6 @@ class MarkedYaml:
                 message = f"unknown key '{shown_key(name)}'{where}{choose_text(str(name), known)}"
                 raise self.error((*keys, str(name)), message)
 
-    def only(self, keys: Keys, known: Collection[str]) -> None:
-        """Raise FileError unless every key of the mapping at `keys` is one of `known`."""
-        inside: Any = self.data
-        for key in keys:
-            inside = inside[key]
-        if not isinstance(inside, dict):
-            raise self.error(keys, f"{_path(keys)} must be a mapping of names to values, not {_shown(inside)}")
-        self.check_names(keys, inside, known)
-
 
 def convert(source: MarkedYaml, kind: type[T], keys: Keys = (), base: T | None = None) -> T:
     """Convert the value at a key path to a dataclass or another type. Raises FileError with the line of a wrong value.

@@ -57,7 +57,6 @@ BENT_SOFT = 0.006  # metres over which an arm comes to its greatest length
 LEVEL_SOFT = 4.0  # degrees over which a forearm comes to its highest
 ELBOWS_IN = 0.62  # part of the way by which elbows turn to the body for another dancer; all of it is too much
 GIVEN_WAY = 0.145  # metres that a hand gives way to another dancer with which its elbow turns to the body
-SIDEWAYS = np.array([[1.0, 1.0], [-1.0, 1.0]])  # outward and up, of both hands
 SPUN = 0.5  # seconds before and after over which a spin is looked for
 ASKEWED = 1.6  # about how far `_wandering` goes up and down
 

@@ -17,7 +17,7 @@ from operator import index
 from pathlib import Path
 from threading import Lock
 from types import FunctionType
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,6 @@ _Unused: Any = ctypes.c_void_p * 2  # for the kernel's return value (none) and t
 _prototype: Any = ctypes.PYFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
 
 INNER_KERNELS: dict[Callable[..., Any], dict[str, Any]] = {}  # kernels for kernels -> numba's options
-F = TypeVar("F", bound=Callable[..., Any])
 Kind = tuple[np.dtype[Any], int] | None  # type and dimensions of an array, row by row; None: a whole number
 
 
