@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.footwork.homing import homeward
-from dancetutor_cli.dance.keys import Keys
 from dancetutor_cli.dance.motion import Cut, Motion, sample
 from dancetutor_cli.dance.physics.repin import AnkleTracks, feet_of, repinned
 from dancetutor_cli.dance.pieces import MORE_PLANNED, OVERLAP, Piece, RagdollStyle, piece_of, track_from
@@ -23,6 +23,9 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.settings import Span
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array, Flags, Poses
+
+if TYPE_CHECKING:
+    from dancetutor_cli.dance.keys import Keys
 
 CROSSING = 1.0  # seconds of the blend between an end and the dance
 OWN_FEET = 0.8  # below this share of the dance, the feet are the feet of the end

@@ -28,12 +28,20 @@ class Condition:
     difficulties: tuple[str, ...] = ()
     meters: tuple[int, int] | None = None
 
-    @property
-    def is_about_charts(self) -> bool:
-        """Whether the condition depends on the chart, not only on the path."""
-        return bool(self.steps_types or self.difficulties or self.meters)
+    def holds_for_file(self, path: Path) -> bool:
+        """Whether the condition is about paths alone and matches this one."""
+        return not (self.steps_types or self.difficulties or self.meters) and self._matches(path)
 
-    def holds_for_path(self, path: Path) -> bool:
+    def holds(self, path: Path, steps_type: str, difficulty: str, meter: int) -> bool:
+        """Whether the path, the steps type, the difficulty and the meter of a chart match."""
+        return (
+            (not self.steps_types or any(fnmatchcase(steps_type.lower(), pattern) for pattern in self.steps_types))
+            and (not self.difficulties or difficulty.lower() in self.difficulties)
+            and (self.meters is None or self.meters[0] <= meter <= self.meters[1])
+            and self._matches(path)
+        )
+
+    def _matches(self, path: Path) -> bool:
         """Whether a pattern matches the path; as in .gitignore, a pattern without a slash matches any part of it."""
         if not self.paths:
             return True
@@ -44,14 +52,6 @@ class Condition:
         return any(
             fnmatchcase(whole, pattern) if "/" in pattern else any(fnmatchcase(part, pattern) for part in path.parts)
             for pattern in self.paths
-        )
-
-    def holds_for_chart(self, steps_type: str, difficulty: str, meter: int) -> bool:
-        """Whether the steps type, the difficulty and the meter match."""
-        return (
-            (not self.steps_types or any(fnmatchcase(steps_type.lower(), pattern) for pattern in self.steps_types))
-            and (not self.difficulties or difficulty.lower() in self.difficulties)
-            and (self.meters is None or self.meters[0] <= meter <= self.meters[1])
         )
 
 

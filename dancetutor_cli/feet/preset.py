@@ -233,7 +233,7 @@ def preset_for(chart: Chart, path: Path, choice: PresetChoice) -> Preset:
     if choice.override is not None:
         return choice.override
     for when, preset in reversed(choice.ruled):
-        if when.holds_for_path(path) and when.holds_for_chart(chart.steps_type, chart.difficulty, chart.meter):
+        if when.holds(path, chart.steps_type, chart.difficulty, chart.meter):
             return preset
     return _default(default_preset(chart.steps_type))
 

@@ -82,9 +82,7 @@ def read_settings(song: Song, chart: Chart, path: Path | None) -> SettingsFeet:
     problems: list[FeetProblem] = []
     ignores: dict[int, frozenset[str]] = {}
     for when, entry in _entries(path, status.st_mtime_ns, status.st_size):
-        if not (
-            when.holds_for_path(song.path) and when.holds_for_chart(chart.steps_type, chart.difficulty, chart.meter)
-        ):
+        if not when.holds(song.path, chart.steps_type, chart.difficulty, chart.meter):
             continue
         for tick, letters in entry.steps.items():
             found = list(_parse_letters(chart, tick, letters))

@@ -55,11 +55,10 @@ class Settings:
     coin_toss: int = 5
     sync: bool = False
     _resolved: dict[tuple[int, ...], dict[str, Options]] = field(default_factory=dict, compare=False, repr=False)
-    _holding: dict[tuple[str, str, int], tuple[int, ...]] = field(default_factory=dict, compare=False, repr=False)
 
     def with_layer(self, layer: Layer) -> Settings:
         """Return the settings with one more layer on top."""
-        return replace(self, layers=(*self.layers, layer), _resolved={}, _holding={})
+        return replace(self, layers=(*self.layers, layer), _resolved={})
 
     def fingerprint(self) -> str:
         """Return a text that is the same for the same settings in every process."""
@@ -70,19 +69,12 @@ class Settings:
 
     def for_file(self, path: Path) -> dict[str, Options]:
         """Return code -> severity and options of the rules that run on a file as a whole."""
-        return self._of(
-            n for n, layer in enumerate(self.layers)
-            if not layer.when.is_about_charts and layer.when.holds_for_path(path)
-        )  # fmt: skip
+        return self._of(n for n, layer in enumerate(self.layers) if layer.when.holds_for_file(path))
 
     def for_chart(self, path: Path, steps_type: str, difficulty: str, meter: int) -> dict[str, Options]:
         """Return code -> severity and options of the rules that run on a chart."""
         kind = (steps_type, difficulty, meter)
-        holding = self._holding.get(kind)
-        if holding is None:
-            holds = (n for n, layer in enumerate(self.layers) if layer.when.holds_for_chart(*kind))
-            holding = self._holding[kind] = tuple(holds)
-        return self._of(n for n in holding if self.layers[n].when.holds_for_path(path))
+        return self._of(n for n, layer in enumerate(self.layers) if layer.when.holds(path, *kind))
 
     def _of(self, layers: Iterable[int]) -> dict[str, Options]:
         """Return the rules of the layers with these indices. They are cached, because most charts have the same."""

@@ -166,8 +166,8 @@ def test_what_it_says_about_presets_is_in_order(tmp_path: Path) -> None:
     given = configured("preset: itg\noverrides:\n  - {when: {difficulty: [Oni, heavy]}, preset: ddr}\n", tmp_path)
     (always, first), (when, second) = given.presets
     assert (always, first, second) == (Condition(), "itg", "ddr")
-    assert when.holds_for_chart("dance-single", "Hard", 9) and when.holds_for_chart("pump-single", "Challenge", 9)
-    assert not when.holds_for_chart("dance-single", "Easy", 9)
+    assert when.holds(tmp_path, "dance-single", "Hard", 9) and when.holds(tmp_path, "pump-single", "Challenge", 9)
+    assert not when.holds(tmp_path, "dance-single", "Easy", 9)
 
 
 def test_a_steps_type_may_be_a_pattern(tmp_path: Path) -> None:

@@ -11,7 +11,6 @@ import numpy as np
 
 from dancetutor_cli.character.characters import DANCER, load_character, name_in_gait
 from dancetutor_cli.character.mesh import with_foot_colours
-from dancetutor_cli.character.onto_skeleton import onto
 from dancetutor_cli.chart.density import fastest_bpm
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.film.choices import parse_ahead
@@ -197,6 +196,7 @@ def _fitted(
     """
     if not motions or (name == DANCER and not given):
         return None, motions
+    from dancetutor_cli.character.onto_skeleton import onto
 
     character = with_foot_colours(load_character(name))
 
