@@ -40,7 +40,8 @@ def json_rows(play: Play, file_lines: NDArray[np.int32]) -> str:
     others = np.flatnonzero(~is_shown)
     is_shown[others] = (play.cost[others] != 0).any(axis=1)
     shown = np.flatnonzero(is_shown)
-    looks, costs = _looks(play, shown), _costs(play, shown)
+    looks = _looks(play, shown)
+    costs = _cached_texts(_bytes(shown, play.cost), _text_cache(play.terms), lambda at: _terms(play, int(shown[at])))
     margins = [-1] * len(shown) if play.margin is None else play.margin[shown].tolist()
     sure = [_UNASKED] * len(shown)
     if play.confidence is not None:
@@ -91,17 +92,10 @@ def _end(margin: int, sure: float) -> str:
 def _looks(play: Play, shown: NDArray[np.intp]) -> list[str]:
     """The text of the steps, feet, facing and moves of some rows."""
     moves = np.fromiter(map(id, play.moves), np.int64, len(play.moves)) if play.events is None else play.events
-    known: dict[bytes, str] = {} if play.events is None else _row_text_cache(play.limb.shape[1])
+    known: dict[bytes, str] = {} if play.events is None else _text_cache(play.limb.shape[1])
     rows = play.rows
     keys = _bytes(shown, rows.steps, play.limb, play.part, play.feet, play.facing[:, None], moves[:, None])
     return _cached_texts(keys, known, lambda at: _pose(play, int(shown[at])))
-
-
-def _costs(play: Play, shown: NDArray[np.intp]) -> list[str]:
-    """The text of the costs of some rows."""
-    return _cached_texts(
-        _bytes(shown, play.cost), _cost_text_cache(play.terms), lambda at: _terms(play, int(shown[at]))
-    )
 
 
 def _cached_texts(keys: list[bytes], known: dict[bytes, str], say: Callable[[int], str]) -> list[str]:
@@ -115,15 +109,12 @@ def _cached_texts(keys: list[bytes], known: dict[bytes, str], say: Callable[[int
     return cast("list[str]", texts)
 
 
-@lru_cache(maxsize=32)
-def _row_text_cache(columns: int) -> dict[bytes, str]:
-    """The cache for rows of `columns` columns: the text of steps, feet, facing and moves by their bytes."""
-    return {}
+@lru_cache(maxsize=64)
+def _text_cache(kind: int | tuple[str, ...]) -> dict[bytes, str]:
+    """The cache of texts by the bytes they are made from.
 
-
-@lru_cache(maxsize=32)
-def _cost_text_cache(terms: tuple[str, ...]) -> dict[bytes, str]:
-    """The cache for rows with these cost terms: the text of costs by their bytes."""
+    kind : the number of columns, for the text of steps, feet, facing and moves; the cost terms, for the text of costs
+    """
     return {}
 
 

@@ -13,7 +13,7 @@ from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.feet.preset import PresetChoice, mismatch, preset_for
 from dancetutor_cli.lint.check import check_chart, check_file, merged_by_foot
-from dancetutor_cli.lint.findings import AUTO, AlternativeResult, Cause, Figures, Finding
+from dancetutor_cli.lint.findings import AUTO, Cause, Figures, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.lint.rule_settings import Settings
 from dancetutor_cli.run.errors import FileError, NoChartsError
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 def chart_result(subject: ChartSubject, task: AnalyzeTask) -> ChartResult:
     """Return the results for a chart, with the parts that the task asks for."""
     from dancetutor_cli.chart.hash import chart_hash
-    from dancetutor_cli.lint.figures import arrows, with_excerpts
+    from dancetutor_cli.lint.figures import alternatives_of, arrows, with_excerpts
 
     chart, play = subject.chart, subject.play
     preset = preset_for(chart, task.path, task.presets)
@@ -50,7 +50,7 @@ def chart_result(subject: ChartSubject, task: AnalyzeTask) -> ChartResult:
         rows=_rows(subject) if task.want_rows else None,
         arrows="" if subject.pad is None else arrows(subject.pad),
         figures=_figures(subject, task) if task.want_figures else None,
-        alternatives=_alternatives(subject, preset, task.alternatives) if task.alternatives else None,
+        alternatives=alternatives_of(subject, preset, task.alternatives) if task.alternatives else None,
         causes=causes,
         ambiguous=tuple(_ambiguous(subject)) if task.want_rows else None,
         preset=None if play is None else play.preset,
@@ -83,12 +83,6 @@ def _findings(
 
         findings = with_suggestions(findings, subject, task.settings, preset)
     return merged_by_foot(findings, subject), causes
-
-
-def _alternatives(subject: ChartSubject, preset: Preset, count: int) -> tuple[AlternativeResult, ...]:
-    from dancetutor_cli.lint.figures import alternatives_of
-
-    return alternatives_of(subject, preset, count)
 
 
 def _figures(subject: ChartSubject, task: AnalyzeTask) -> Figures:

@@ -220,7 +220,10 @@ _OTHERS = "dance-single"  # the pad whose table holds for pads without a table
 
 
 class Band(NamedTuple):
-    """Charts for one kind of pad, of meters `first` to `last` (None: no limit). within : see `milliseconds`"""
+    """Charts for one kind of pad, of meters `first` to `last` (None: no limit).
+
+    within : for each time of the table, the per cent of charts that have the move within it
+    """
 
     pad: str
     first: int
@@ -252,14 +255,6 @@ def bands(move: str) -> Iterator[Band]:
             first = 0 if last is None else last + 1
 
 
-def milliseconds() -> tuple[int, ...]:
-    """Return the times of the table in milliseconds.
-
-    `Band.within` has, for each time, the per cent of charts that have the move within it.
-    """
-    return _times().milliseconds
-
-
 @cache
 def limit(move: str, share: float, steps_type: str, meter: int) -> float:
     """Return the longest time (s) within which at most `share` per cent of a meter's charts have the move, or 0."""
@@ -270,13 +265,13 @@ def limit(move: str, share: float, steps_type: str, meter: int) -> float:
 
 def limit_of(band: Band, share: float) -> int:
     """Return the limit for a band in milliseconds, see `limit`."""
-    few = [time for time, part in zip(milliseconds(), band.within, strict=True) if part <= share]
+    few = [time for time, part in zip(_times().milliseconds, band.within, strict=True) if part <= share]
     return max(few, default=0)
 
 
 def describe_bands(move: str, share: float, slowest: float = math.inf) -> Iterator[str]:
     """Yield a line for each band: the limit, at most `slowest` (s), and the shares of charts on both sides of it."""
-    times = milliseconds()
+    times = _times().milliseconds
     for band in bands(move):
         at = limit_of(band, share)
         parts = dict(zip(times, band.within, strict=True))

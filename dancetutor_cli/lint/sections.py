@@ -29,7 +29,7 @@ _HARDEST = re.compile(r"\s*hardest\s*:\s*(\d+)\s*", re.IGNORECASE)
 def check_part(text: str) -> None:
     """Raise `UsageError` for a text that can be no part of any chart, before a chart is read."""
     if not _FINDING.fullmatch(text) and not _HARDEST.fullmatch(text):
-        check_section(text)
+        _ends(text)
 
 
 def part_of(text: str, song: Song, chart: Chart, preset: Preset, end: float) -> tuple[float, float]:
@@ -86,11 +86,6 @@ def _around_finding(song: Song, chart: Chart, preset: Preset, rule: str, number:
 def _numbered(name: str, count: int) -> str:
     """All of `count` choices that are numbered from 1: "DT202:1", "DT213:1 to DT213:4"."""
     return f"{name}:1" + (f" to {name}:{count}" if count > 1 else "")
-
-
-def check_section(text: str) -> None:
-    """Raise `UsageError` for a text that can be no section of any song, before a chart is read."""
-    _ends(text)
 
 
 def parse_section(text: str, timing: Timing, end_second: float) -> tuple[float, float]:

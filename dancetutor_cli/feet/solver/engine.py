@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -162,7 +162,8 @@ class Engine:
         )
 
     def _call(self, arrays: RowArrays, start: int, nodes: RowStates, found: SolverPath) -> tuple[int, int]:
-        with _wrapping():
+        # numpy warns about integers of hash functions that overflow, as they do in compiled code
+        with np.errstate(over="ignore") if runs_as_python() else nullcontext():
             return self._solve(arrays, start, self.tables, nodes, self._making, found)
 
     def _run(self, arrays: RowArrays, found: SolverPath) -> RowStates:
@@ -172,17 +173,14 @@ class Engine:
         return nodes
 
     def _start_anew_if_full(self) -> None:
-        if self._is_full():
+        counts = self.tables.counts
+        has_many_facts = counts[store.FACTS_KNOWN] > store.FACTS_MASK // 2
+        if has_many_facts or counts[store.MOVES] > _MOST_MOVES_KEPT or counts[store.EDGES] > _MOST_EDGES_KEPT:
             self.tables = empty_tables(len(self.preset.weights))
 
     def _room(self, n: int, c: int) -> RowStates:
         wanted = _nodes_of(n, c)
         return _nodes(n, self._node if wanted <= _NODES_KEPT else np.empty(wanted, dtype=np.int64))
-
-    def _is_full(self) -> bool:
-        counts = self.tables.counts
-        facts = counts[store.FACTS_KNOWN] > store.FACTS_MASK // 2
-        return bool(facts or counts[store.MOVES] > _MOST_MOVES_KEPT or counts[store.EDGES] > _MOST_EDGES_KEPT)
 
     def _empty_path(self, n: int, c: int, *, margins: bool) -> SolverPath:
         return SolverPath(
@@ -209,11 +207,6 @@ class Engine:
             elif wanted != store.DONE:
                 self.tables = grown(self.tables, wanted, len(arrays.tick))
         return start
-
-
-def _wrapping() -> AbstractContextManager[object]:
-    """Suppress numpy's warnings about integers of hash functions that overflow, as they do in compiled code."""
-    return np.errstate(over="ignore") if runs_as_python() else nullcontext()
 
 
 def _arrays(rows: Rows, forced: NDArray[np.int64] | None) -> RowArrays:
