@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from dancetutor_cli.chart.edits import apply, unified_diff
+from dancetutor_cli.chart.pack_files import find_settings_file
 from dancetutor_cli.chart.reader import load, parse
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.feet.preset import preset_for
+from dancetutor_cli.feet.preset import PresetChoice, choice_of, preset_for
 from dancetutor_cli.markers import background, edit
 from dancetutor_cli.markers.model import CheckLine, FileChange, NoteChange
 from dancetutor_cli.markers.styles import IN_FILES, OF_EACH_FILE, OF_UCS, file_style
@@ -147,7 +148,7 @@ class _Work:
         """
         from dancetutor_cli.markers import plan
 
-        presets = _configured(self.request.preset).presets(self.item.source)
+        presets = _presets(self.request.preset, self.item.source)
         into_file = "edit" in self.request.styles and self.request.into_file
         song = self._without_added() if into_file else self.song
         found = plan.solve_charts(song, self._charts(song), lambda chart: preset_for(chart, self.item.source, presets))
@@ -270,9 +271,18 @@ class _Work:
                 raise
 
 
+def _presets(preset: str | None, path: Path) -> PresetChoice:
+    """Return the presets for the charts of a file, as in `analyze`, so that both commands find the same feet."""
+    if find_settings_file(path.absolute().parent) is None:
+        return _unconfigured(preset)
+    return _configured(preset).presets(path)
+
+
+_unconfigured = cache(choice_of)  # solvers are kept for each preset
+
+
 @cache
 def _configured(preset: str | None) -> LintRun:
-    """Return the settings that choose presets, as in `analyze`, so that both commands find the same feet."""
     from dancetutor_cli.lint.run import LintRequest, LintRun
 
     return LintRun(LintRequest(preset=preset))
