@@ -12,7 +12,7 @@ from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import find_files
 from dancetutor_cli.lint.analysis import solve_selected
-from dancetutor_cli.lint.meter.model import Feature, features
+from dancetutor_cli.lint.meter.model import Feature, features_of
 from dancetutor_cli.lint.meter.score import Oddities
 from dancetutor_cli.lint.run import LintRequest, LintRun
 from dancetutor_cli.run.errors import DancetutorError
@@ -69,7 +69,7 @@ def labelled(folder: Path, wanted: Iterable[Feature]) -> list[Labelled]:
             key = (chart.steps_type, chart.meter, play.rows.steps.tobytes(), play.rows.second.round(2).tobytes())
             one = Labelled(
                 str(path), song.tags.get("METERTYPE", ""), "", chart.steps_type, chart.difficulty, chart.meter,
-                len(subject.step_rows), subject.seconds_played(), tuple(features(play, wanted)),
+                len(subject.step_rows), subject.seconds_played(), tuple(features_of([play], wanted)[0]),
                 subject.oddities(), key in seen,
             )  # fmt: skip
             seen.add(key)

@@ -16,7 +16,7 @@ from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solver.solve import solve_chart
-from dancetutor_cli.lint.meter.model import THINGS, Feature, features, features_of, model_for
+from dancetutor_cli.lint.meter.model import THINGS, Feature, features_of, model_for
 
 ALL = [Feature(thing, seconds, "mean") for thing in THINGS for seconds in (1, 10, 60)]
 ALL += [Feature("steps", seconds, "peak") for seconds in (1, 10, 60)] + [Feature("steps", 0, "count")]
@@ -35,6 +35,10 @@ def played(measures: Sequence[str], bpm: str = "60", steps_type: str = "dance-si
 def mixed() -> Play:
     """A stream with a crossover, a jump, a hold with steps, and a rest."""
     return played(["1000 0100 0001 0010 1000 0010 0001 0100", "1001 0000 2000 0010 0001 3000 0000 1100"] * 3, "150")
+
+
+def features(play: Play, wanted: Sequence[Feature], rate: float = 1.0) -> list[float]:
+    return features_of([play], wanted, rate)[0]
 
 
 def value(play: Play, thing: str, seconds: float, how: str, rate: float = 1.0) -> float:

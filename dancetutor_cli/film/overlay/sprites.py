@@ -200,7 +200,7 @@ def hold_tail(width: int, colour: RGB) -> Sprite:
     return p.sprite()[height:]
 
 
-def marker(size: int, limb: int, face: Typeface, colour: RGB | None = None, rim: bool = False) -> Sprite:
+def marker(size: int, limb: int, face: Typeface, rim: bool = False) -> Sprite:
     """Draw the mark of the limb that steps a note: letter, colour and shape.
 
     A left foot is a disc, a right foot a square; hands have the same shapes with a ring.
@@ -209,7 +209,7 @@ def marker(size: int, limb: int, face: Typeface, colour: RGB | None = None, rim:
     rim : draw a light rim around the dark rim, for a mark on a note of any colour
     """
     p = blit.Painter(size, size)
-    paint = (NOBODY if limb < 0 else limb_colours().by_limb[limb]) if colour is None else colour
+    paint = NOBODY if limb < 0 else limb_colours().by_limb[limb]
     unit = size / 32
     radius = 0.5 * size - 1
     right = limb in (1, 3)

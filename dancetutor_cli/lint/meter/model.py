@@ -70,11 +70,6 @@ class Feature(NamedTuple):
     kind: str
 
 
-def features(play: Play, wanted: Sequence[Feature], rate: float = 1.0) -> list[float]:
-    """Return the wanted features of one play, see `features_of`."""
-    return features_of([play], wanted, rate)[0]
-
-
 def features_of(plays: Sequence[Play], wanted: Sequence[Feature], rate: float = 1.0) -> list[list[float]]:
     """Return the wanted features of each play, 0 or more. No feature falls at a higher rate.
 
