@@ -161,11 +161,26 @@ def loaded_by(module: str) -> set[str]:
     ("module", "without"),
     [
         ("commands.analyze", ("yaml", "numpy", "run.schema", "lint.results", "lint.snapshots")),
-        ("film.work.planning", ("lint.rule", "lint.configuration", "dance.physics.simulation", "dance.grips")),
+        (
+            "film.work.planning",
+            ("lint.rule", "lint.configuration", "dance.physics.simulation", "dance.grips", "dance.bake"),
+        ),
     ],
 )
 def test_what_only_some_runs_need_is_loaded_by_them(module: str, without: tuple[str, ...]) -> None:
-    """`--help` reads no settings and no results; a film no rules, and no ragdoll or rail where none is asked for."""
+    """`--help` reads no settings and no results.
+
+    A film reads no rules, bakes nothing that is kept, and has no ragdoll or rail where none is asked for.
+    """
     loaded = loaded_by(module)
     assert f"dancetutor_cli.{module}" in loaded
     assert loaded & {*without, *(f"dancetutor_cli.{name}" for name in without)} == set()
+
+
+def test_marking_a_song_without_settings_needs_no_linter() -> None:
+    song = ROOT / "charts" / "two_left_feet" / "two_left_feet.ssc"
+    code = "import sys; from dancetutor_cli.commands import cli; cli(sys.argv[1:], standalone_mode=False)"
+    code += "; print('loaded', *(name for name in sys.modules if 'lint' in name))"
+    command = [sys.executable, "-c", code, "annotate", str(song), "--diff"]
+    run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    assert run.stdout.splitlines()[-1] == "loaded", run.stdout[-1000:]

@@ -8,6 +8,7 @@ from __future__ import annotations
 import gc
 from contextlib import suppress
 
+from dancetutor_cli.dance import bake as bake
 from dancetutor_cli.film.work import planning as planning
 from dancetutor_cli.film.work import segments
 from dancetutor_cli.run.process import reduce_garbage_collection

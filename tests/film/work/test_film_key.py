@@ -18,6 +18,7 @@ from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.media.encoder import Encoding
 from dancetutor_cli.film.scroll import parse_scroll
 from dancetutor_cli.film.work.request import FilmRequest, film_key, look_up
+from dancetutor_cli.lint import configuration
 from dancetutor_cli.lint.analysis import AnalyzeTask
 from dancetutor_cli.lint.results import ResultCache
 from dancetutor_cli.lint.run import LintRequest, LintRun
@@ -104,6 +105,14 @@ def other_values(song: Path) -> dict[str, list[Any]]:
         "background": [True],
         "motions": [(folder / "her.npz",)],
     }
+
+
+def test_without_settings_no_rules_are_read(song: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(configuration, "load_configuration", lambda *_, **__: pytest.fail("the rules are read"))
+    key(request_of(song))
+    (song.parent / "dancetutor.yaml").write_text("rules: {spin: error}\n")
+    with pytest.raises(pytest.fail.Exception, match="rules are read"):
+        key(request_of(song))
 
 
 def test_every_field_of_a_request_counts(song: Path) -> None:
