@@ -151,7 +151,12 @@ def test_what_was_solved_before_changes_nothing(corpus_rows: list[tuple[str, Row
         assert used.tables.state_key[:40].tolist() != fresh.tables.state_key[:40].tolist()
         assert (used.cheapest(first(rows, 99)).limb == Engine(pad, preset).cheapest(first(rows, 99)).limb).all()
         used.tables.counts[MOVES] = 3_000_000  # so full that the tables start again
+        fresh = Engine(pad, preset)
         assert (used.cheapest(rows).limb == fresh.cheapest(rows).limb).all() and used.tables.counts[MOVES] < 3_000_000
+        assert used.tables.counts.tolist() == fresh.tables.counts.tolist()
+        for field in ("met", "timed_cost", "state_hash", "transition_hash"):  # the used ones may be longer
+            kept, new = (np.sort(getattr(engine.tables, field), axis=None) for engine in (used, fresh))
+            assert kept[kept > 0].tolist() == new[new > 0].tolist(), field
 
 
 def test_little_room_changes_nothing(corpus_rows: list[tuple[str, Rows]]) -> None:

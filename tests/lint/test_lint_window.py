@@ -78,6 +78,22 @@ def test_windows_of_any_size_say_the_same(tasks: list[AnalyzeTask], rows: int, m
     assert {"DT101", "DT201", "DT202", "DT206", "DT207", "DT213", "DT214", "DT302", "DT304", "DT305"} <= rules
 
 
+@pytest.mark.parametrize("rows", [1, 700])
+def test_results_come_while_other_files_wait(
+    tasks: list[AnalyzeTask], rows: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A result that was kept to the end would take memory for each file of a folder."""
+    monkeypatch.setattr(analysis, "_ROWS", rows)
+    read: list[AnalyzeTask] = []
+
+    def noted(task: AnalyzeTask) -> AnalyzeTask:
+        read.append(task)
+        return task
+
+    waiting = [len(read) - number for number, _ in enumerate(analyze_files(map(noted, tasks)))]
+    assert max(waiting) <= (1 if rows == 1 else 6)
+
+
 def test_analysed_files_are_reported_before_an_error(tasks: list[AnalyzeTask], monkeypatch: pytest.MonkeyPatch) -> None:
     solve = analysis.solve_selected
 

@@ -16,7 +16,7 @@ from dancetutor_cli.feet.preset import Curve, Preset
 from dancetutor_cli.feet.solver import store
 from dancetutor_cli.feet.solver.compiled import runs_as_python
 from dancetutor_cli.feet.solver.solvers import EXPLAIN, solve_itg, solve_thesis
-from dancetutor_cli.feet.solver.store import RowArrays, RowStates, SolverPath, empty_tables, grown
+from dancetutor_cli.feet.solver.store import RowArrays, RowStates, SolverPath, clear_tables, empty_tables, grown
 from dancetutor_cli.feet.solver.tables import (
     MOST_MOVES,
     UNPLAYED_CODE,
@@ -56,8 +56,8 @@ def cost_at(curve: Curve, milliseconds: NDArray[np.int64]) -> NDArray[np.int64]:
 _SOLVERS = {"thesis": solve_thesis, "itg": solve_itg}
 _NODES_KEPT = 1 << 16  # words for the nodes of a usual chart, reused between charts
 _NODES_A_ROW = 5  # words per row that a long chart is first given, in addition to one word per column
-_MOST_MOVES_KEPT = 2_000_000  # limit after which the tables start again, so that a long run does not fill the memory
-_MOST_EDGES_KEPT = 2_000_000  # limit, as for moves
+_MOST_MOVES_KEPT = 500_000  # limit after which the tables start again, so that a long run does not fill the memory
+_MOST_EDGES_KEPT = 500_000  # limit, as for moves
 _MOST_ENGINES = 8
 
 
@@ -176,7 +176,7 @@ class Engine:
         counts = self.tables.counts
         has_many_facts = counts[store.FACTS_KNOWN] > store.FACTS_MASK // 2
         if has_many_facts or counts[store.MOVES] > _MOST_MOVES_KEPT or counts[store.EDGES] > _MOST_EDGES_KEPT:
-            self.tables = empty_tables(len(self.preset.weights))
+            clear_tables(self.tables)
 
     def _room(self, n: int, c: int) -> RowStates:
         wanted = _nodes_of(n, c)

@@ -319,6 +319,16 @@ def empty_tables(weights: int) -> Tables:
     )
 
 
+def clear_tables(t: Tables) -> None:
+    """Empty the tables in place. New ones would take memory for the untouched room, too: that of the old ones."""
+    t.met[: t.counts[STATES]] = 0
+    t.timed_cost[: t.counts[TIMES]] = UNKNOWN
+    t.counts[:] = 0
+    numbers = (t.state_hash, t.pattern_hash, t.pair, t.terms_hash, t.timed_hash, t.timed_row, t.layer_hash)
+    for table in (*numbers, t.transition_hash):
+        table.fill(-1)
+
+
 def grown(t: Tables, wanted: int, rows: int) -> Tables:
     """Return the tables with more room in the table that `wanted` names."""
     counts = t.counts
