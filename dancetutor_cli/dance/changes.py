@@ -42,7 +42,7 @@ class MeanHeight:
 
 
 def mean_feet(feet: Sequence[Feet], weights: Array) -> Feet:
-    """Both feet as the mean of the states; weights (f, k). All states have the same plan, so feet stand together."""
+    """Return the mean of the feet of all states; weights (f, k). States have one plan, so feet stand together."""
     sides = []
     for paths in zip(*feet, strict=True):
         ball = np.einsum("fk,kfx->fx", weights, np.array([p.ball for p in paths]))

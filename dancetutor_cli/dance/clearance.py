@@ -83,7 +83,7 @@ LATE_PRICE = 1.0  # metres of detour with the same weight as a foot that is late
 
 
 def _ways(sides: ArrayLike, ahead: int, late: tuple[float, ...]) -> Array:
-    """Detours (k, 3), smallest first: metres sideways and along the path at its middle, and lateness as in `Bulge`."""
+    """Return detours (k, 3), smallest first: metres aside and ahead at the middle, and lateness as in `Bulge`."""
     grid = np.meshgrid(sides, np.arange(-ahead, ahead + 1) * 0.06, late)
     ways = np.column_stack([axis.ravel() for axis in grid])
     return np.asarray(ways[np.argsort(np.abs(ways) @ [1.0, 1.0, LATE_PRICE], kind="stable")])

@@ -65,7 +65,7 @@ def mood_at(plan: Plan, body: Trajectory, at: Array, context: Context) -> Mood:
 
 
 def peeks_at(plan: Plan, free: Array, at: Array, context: Context) -> Peeks:
-    """Peeks at times `at` (f,): before some of the steps with enough time, and before each step that ends a wait.
+    """Return peeks at times (f,): before some of the steps with enough time, and before each step that ends a wait.
 
     free : (f,) 0 where hands are busy. Random choices depend on the time of a step, so mirror images peek as mirror
     images.

@@ -50,7 +50,7 @@ _SPREAD = np.arange(0.0, 0.15, 0.02)  # metres that each foot goes outward
 
 
 def turning(start: Array, end: Array, middles: tuple[Array, Array], turn: Array, e: Array) -> Array:
-    """Places (..., 2) on the way round a middle that moves (thesis 5.6.2.2), all arrays of one shape (..., 2) or (...).
+    """Return places (..., 2) on the way round a middle that moves (thesis 5.6.2.2); arrays are (..., 2) or (...).
 
     middles : before and after; turn : radians, the side on which the way goes round; e : 0 to 1, how far it has come
     """
@@ -99,7 +99,7 @@ def jump_ways(
 
 
 def _gaps(balls: Array, aim: Array) -> Array:
-    """Least distances (k,) between the middle lines of both shoes; balls and headings (2, k, 2)."""
+    """Return the least distances (k,) between the middle lines of both shoes; balls and headings (2, k, 2)."""
     shoes = [shoe_line(b - BALL_AHEAD * a, a) for b, a in zip(balls, aim, strict=True)]
     return segment_gaps(*shoes[0], *shoes[1])
 
@@ -207,7 +207,7 @@ def _over_ground(track: FootTrack, times: Array, settings: MotionSettings) -> _O
 
 
 def _shaken(move: Move, times: Array, ball: Array, pitch: Array) -> tuple[Array, Array]:
-    """Ball (m, 3) and pitch (m,) of a foot that is shaken out, at times (m,) in its move."""
+    """Return the ball (m, 3), metres, and the pitch (m,), radians, of a shaken foot at times (m,) in its move."""
     assert isinstance(move, Shake)
     s = (times - move.lift) / (move.land - move.lift)
     fade = smooth(SHAKE_RAMPS * s) * smooth(SHAKE_RAMPS * (1.0 - s))
@@ -220,8 +220,8 @@ def _shaken(move: Move, times: Array, ball: Array, pitch: Array) -> tuple[Array,
 
 
 def _climb(before: Array, after: Array, s: Array, walk: WalkSettings) -> Array:
-    """Height of the ground under a swing: the foot rises at once and comes down late, because there is an edge between
-    levels.
+    """Return the height (f,) of the ground under a swing, metres: a foot rises at once and comes down late over an edge
+    between two levels.
     """
     up, down = smooth(s / walk.edge_up), smooth((s - 1.0 + walk.edge_down) / walk.edge_down)
     return np.asarray(before + np.where(after > before, up, down) * (after - before))
@@ -256,7 +256,7 @@ def _low(track: FootTrack, even: float) -> Array:
 
 
 def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], e: Array) -> Array:
-    """Ground path: straight and past the other foot, or for jumps partly round the middle between the feet.
+    """Return places (f, 2) over the ground: straight and past the other foot, or in jumps partly round the middle.
 
     e : as of `travel_share`
     """
@@ -274,7 +274,7 @@ def _ground(track: FootTrack, place: Array, i: NDArray[np.int64], e: Array) -> A
 
 
 def _height(track: FootTrack, i: NDArray[np.int64], s: Array, step: Array) -> Array:
-    """Height of the sole; step : as of `rise_share`."""
+    """Return the height (f,) of the sole, metres. step : (f,) as of `rise_share`"""
     height = np.array([m.height if isinstance(m, Swing) else 0.0 for m in track.moves])[i]
     tuck = np.array([m.tuck if isinstance(m, Jump) else 0.0 for m in track.moves])[i]
     # pulled up at once, because a leg that trails behind is stretched as the body leaves the ground
@@ -291,7 +291,7 @@ def _swing_pitch(track: FootTrack, i: NDArray[np.int64], s: Array, top: float) -
 
 
 def _stand_pitch(track: FootTrack, times: Array, done: NDArray[np.int64], settings: MotionSettings) -> Array:
-    """Heel of a standing foot: comes down after landing, rises before the next swing."""
+    """Return the pitch (f,) of a standing foot, radians: its heel sinks after landing, rises before a swing."""
     step, moves = settings.step, track.moves
     pitches = np.array([m.pitches for m in moves])
     landed = np.array([-1e9, *(m.land for m in moves)])[done]

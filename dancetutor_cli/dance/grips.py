@@ -173,7 +173,7 @@ FARTHER_AHEAD = (0.0, -0.02, 0.02, -0.04, 0.04, -0.06)
 
 
 def turns(plan: Plan, times: Array, trunk: BarTrunk, busy: Flags, context: Context) -> tuple[Grip, ...]:
-    """Grips as long as the turns in which a hand may cross over, for a body that turns and leans for them.
+    """Return grips as long as the turns in which a hand may cross over, for a body that turns and leans for them.
 
     The hand does not cross in all of them; chance decides, always in the same way for a song.
     """
@@ -249,7 +249,7 @@ def _between(times: Array, start: float, end: float) -> slice:
 
 
 def _chance(plan: Plan, second: float) -> tuple[float, float]:
-    """Two numbers from 0 to 1, always the same ones for a second of a song."""
+    """Return two numbers from 0 to 1, always the same ones for a second of a song."""
     one, other = chance_of(SEED, *plan.song, round(1000 * second)).random(2)
     return float(one), float(other)
 
@@ -365,7 +365,7 @@ def _busy(plan: Plan, times: Array, settings: MotionSettings) -> Flags:
 
 
 def _pieces(times: Array, arm: Arm, bar: BarSettings) -> Iterator[Grip]:
-    """Grips in the stretches in which the rail is within reach, divided where the body has moved on along it."""
+    """Yield grips in the stretches in which the rail is within reach, divided where the body has moved on along it."""
     least, pause = max(1, round(bar.shortest * RATE)), max(1, round(bar.reach_time * RATE))
     last = 0
     for first, end in runs(firm(arm.fits(arm.place, slice(None)), bar.early)).tolist():

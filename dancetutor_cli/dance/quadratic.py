@@ -316,9 +316,10 @@ def _direction(
 
 
 def _interior_point(bands: Array, right: Array, limits: _Rows, tolerance: float, most: int) -> tuple[Array, bool, int]:
-    """The excess of a limit that gives way is give * z at the minimum, so it needs no unknown of its own.
+    """Return the minimum x (n, 1), whether it is found to `tolerance`, and the rounds taken, at `most` so many.
 
-    Not a kernel: numpy does as well with whole arrays, and numba takes long to compile such sums.
+    The excess of a limit that gives way is give * z at the minimum, so it needs no unknown of its own. Not a kernel:
+    numpy does as well with whole arrays, and numba takes long to compile such sums.
     """
     x = _solve_one(_factor(bands), right)
     m, give = len(limits.high), limits.give

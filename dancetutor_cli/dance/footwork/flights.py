@@ -75,7 +75,7 @@ def flown(footing: Footing, flight: Flight, goals: Goals, pitches: list[Pitches]
 def hop(
     row: Row, footing: Footing, take_off: float, goals: Goals, columns: list[list[int]], turned: float = 0.0
 ) -> Proposal:
-    """Both feet in the air from `take_off` until the row.
+    """Propose a jump: both feet are in the air from `take_off`, seconds, until the row.
 
     columns : that each foot stands over then; turned : degrees that the line between the feet turns
     """
@@ -96,7 +96,7 @@ def _mined(row: Row, footing: Footing, take_off: float) -> bool:
 
 
 def _first(row: Row, footing: Footing, take_off: float, goals: Goals) -> tuple[float, float]:
-    """When each foot leaves the ground in a quick jump: the one with the longer way before both take off."""
+    """Return when each foot leaves the ground in a quick jump: the one with the longer way before both take off."""
     step, feet, time = footing.settings.step, footing.feet, row.time
     ways = [float(np.linalg.norm(ball - f.ball)) for (ball, _), f in zip(goals, feet, strict=True)]
     side = int(ways[1] > ways[0])
@@ -110,7 +110,7 @@ def _first(row: Row, footing: Footing, take_off: float, goals: Goals) -> tuple[f
 
 
 def take_off_for(footing: Footing, time: float, flight: float) -> float:
-    """When both feet take off to land at `time`, if they would fly for so many seconds."""
+    """Return when both feet take off to land at `time`, if they would fly for so many seconds."""
     feet = footing.feet
     latest = (f.latest(time, footing.settings.step.let_go) for f in feet)
     take_off = min(max(time - flight, *(f.earliest(time) for f in feet)), *latest)
@@ -133,7 +133,7 @@ def tuck_for(distance: float, seconds: float, jump: JumpSettings) -> float:
 
 
 def leap(row: Row, foot: FootState, goal: tuple[Array, float], columns: list[int], footing: Footing) -> Proposal | None:
-    """Both feet leave the ground, and the other foot lands beside the one that steps; None if a step is enough.
+    """Propose that both feet leave the ground, the other to land beside the stepping one; None: a step is enough.
 
     foot : that steps; goal : ball (2,) and yaw with which it lands; columns : that it stands over then
     """

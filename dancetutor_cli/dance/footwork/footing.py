@@ -218,7 +218,7 @@ class Footing:
 
     @classmethod
     def at_home(cls, context: Context, lead: int, place: float = 0.0) -> Footing:
-        """Both feet where the dancer waits, facing the screen. place : along x, metres; by default the pad's middle"""
+        """Return both feet where the dancer waits, facing the screen. place : along x, metres, 0 in the middle"""
         return cls(context, lead, (_at_home(0, place, context.settings), _at_home(1, place, context.settings)))
 
     @property

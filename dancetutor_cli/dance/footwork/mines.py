@@ -151,7 +151,7 @@ def _hurried(foot: FootState, settings: MotionSettings, lift: float, land: float
 def wait_for_other_foot(
     other: FootState, settings: MotionSettings, lift: float, time: float
 ) -> tuple[FootState, float]:
-    """When a foot leaves for its step at `time`: at `lift`, or later, when the other foot is down again from a mine.
+    """Return when a foot leaves for its step at `time`: at `lift`, or once the other foot is down again from a mine.
 
     The result also has the other foot, which may land sooner.
     """

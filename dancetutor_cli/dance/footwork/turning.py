@@ -128,7 +128,7 @@ class Facing:
         return turn
 
     def _half(self, j: int, normal: float, rounded: float, side: float) -> float:
-        """Half a turn at row `j`, left or right. It does not go on around the back, which would be a spin in the play.
+        """Return half a turn at row `j`, left or right. It does not go on around the back: that would be a spin.
 
         side : 1 left, -1 right, for a dancer who turns her back to the screen directly; not used if she stands aside
         later

@@ -155,7 +155,7 @@ def _pull_root(root: Vec, pelvis: Quat, hips: tuple[Vec, Vec], ankles: tuple[Vec
 
 @njit_inner
 def _chain(start: Vec, between: tuple[Vec, Vec], end: Vec, lengths: tuple[float, float, float]) -> tuple[Vec, Vec, Vec]:
-    """FABRIK on a chain of three bones from the fixed `start` to the wanted `end`, and the two joints between."""
+    """Solve a chain of three bones from the fixed `start` to `end` by FABRIK; return the two joints between."""
     p2, p3 = between
     l1, l2, l3 = lengths
     p4 = end

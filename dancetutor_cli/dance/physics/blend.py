@@ -131,7 +131,7 @@ def style_sources(text: str) -> tuple[tuple[str | Path, float], ...]:
 
 
 def weights_of(text: str, folder: Path = Path()) -> list[tuple[str, float]]:
-    """Names of styles and their weights, above 0 to 1, in a `--style`; a single name has 1. folder : of the files
+    """Return the styles and weights, above 0 to 1, of a `--style`; a single name has 1. folder : of the files
 
     Raises UsageError for a text in another form.
     """

@@ -200,7 +200,7 @@ def _leg(places: Mapping[str, Array]) -> float:
 
 
 def _level(pelvis: Array, given: _Upright) -> Array:
-    """Turns (f, 4) of a pelvis wider than the captured one: it leans aside less, so that its hips rise no more."""
+    """Return turns (f, 4) of a pelvis wider than the captured one: it leans aside less, so its hips rise no more."""
     if given.wider <= 0.0:
         return pelvis
     line = quat.rotate(pelvis, quat.LEFT)

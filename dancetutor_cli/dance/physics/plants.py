@@ -35,9 +35,7 @@ CLEAR = 0.003  # metres over the floor of a foot that is not held
 
 @dataclass(frozen=True, slots=True)
 class Plants:
-    """The held feet. heel, ball : bool (f, 2), whether that end of the left and of the right foot is held
-    to the floor
-    """
+    """The held feet. heel, ball : bool (f, 2), whether that end of the left and of the right foot is on the floor."""
 
     heel: Flags
     ball: Flags

@@ -92,7 +92,7 @@ class _Foot:
         self.reach = TwoBones(skeleton, "lr"[side]).distance(FROM) + SINKS
 
     def stands(self, place: Array, turn: Array) -> list[_Stand]:
-        """Stands in time: the stands of ankle (f, 3) and ball, joined where they overlap, with shuffles split."""
+        """Return the stands of ankle (f, 3) and ball in order, joined where they overlap, with shuffles split."""
         ankles, balls = (_unshuffled(self.times, path) for path in (place, place + quat.rotate(turn, self.sole.ball)))
         joined: list[list[int]] = []
         for first, end in sorted((*ankles, *balls)):
@@ -105,7 +105,7 @@ class _Foot:
         ]
 
     def held(self, place: Array, turn: Array, stands: list[_Stand]) -> tuple[Array, Array, Flags, Flags, Array]:
-        """Ankle (f, 3) and turn (f, 4) of the foot, still in its stands; whether heel and ball are held; how far."""
+        """Return ankle (f, 3) and turn (f, 4) of a foot, still in its stands; whether heel and ball are held; how far."""
         frames, ball = len(place), place + quat.rotate(turn, self.sole.ball)
         heel_down, on_floor, fixed = (np.zeros(frames, dtype=bool) for _ in range(3))
         moved, turned = np.zeros((frames, 3)), np.zeros((frames, 3))
@@ -150,7 +150,7 @@ class _Foot:
         return _level_turns(heading, pitch), rigid & (pitch == 0.0)
 
     def _pivoted(self, heading: Array, stand: _Stand) -> Array:
-        """Headings (n,) of a foot that pivots: one in each stand of the ankle, unless it is turned far from it."""
+        """Return headings (n,) of a foot that pivots: one in each stand of the ankle, unless it turns far from it."""
         wanted, near = heading.copy(), np.zeros(len(heading), dtype=bool)
         for first, end in stand.ankle:
             wanted[first:end] = np.median(heading[first:end])

@@ -123,7 +123,7 @@ FIT = 0.12  # seconds; the arc of a shorter flight is so flat (under 2 cm) that 
 
 
 def flight_figures(body: Body) -> tuple[Figure, ...]:
-    """G and residual of a parabola fitted to each flight, its apex, and the force on the ground in body weights."""
+    """Return g and residual of a parabola fitted to each flight, its apex, and the ground force in body weights."""
     flying = np.asarray(~body.is_standing.any(axis=1))
     gravity, residual, apex = [], [], []
     height = body.mass[:, 1]
@@ -285,7 +285,7 @@ def _active_set(rows: Array, target: Array) -> Array:
 
 @njit(cache=True)
 def _least_squares(rows: Array, chosen: NDArray[np.int64], count: int, target: Array) -> tuple[Array, bool]:
-    """The unknowns of the chosen columns by QR (Gram-Schmidt, twice); False if a column depends on earlier ones."""
+    """Find the unknowns of the chosen columns by QR (Gram-Schmidt, twice); False if a column depends on others."""
     m = rows.shape[1]
     q, r = np.zeros((count, m)), np.zeros((count, count))
     for k in range(count):

@@ -27,7 +27,7 @@ HAND_TURN = 2000.0  # degrees per second that a hand turns on its forearm at mos
 
 
 def liveliness_figures(body: Body, motion: Motion) -> tuple[Figure, ...]:
-    """Figures of the frames from the first step to the last one; nan, with no goal missed, if there are too few."""
+    """Return figures of the frames from the first step to the last; nan, with no goal missed, if there are too few."""
     skeleton, contacts = motion.skeleton, motion.contacts
     stepping = _stepping(body.times, contacts)
     seconds = float(stepping.sum()) / body.rate

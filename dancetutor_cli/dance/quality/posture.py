@@ -216,7 +216,7 @@ HOME, READY = 2.5, 1.0  # seconds at the beginning and at the end of a wait in w
 
 
 def posture_figures(body: Body, skeleton: Skeleton, contacts: tuple[Contact, ...]) -> tuple[Figure, ...]:
-    """Knee flexion, trunk lean, the knees in jumps, speeds of wrists, pelvis and head, and weight shift in waits."""
+    """Return knee flexion, trunk lean, knees in jumps, speeds of wrists, pelvis and head, and weight shift in waits."""
     knees = 180.0 - knee_angles(body, skeleton)
     off, fold, give = _medians(jump_knees(body, knees))
     shift = weight_shifts(body, contacts)

@@ -62,7 +62,7 @@ def _forward(
 
 
 def joint_matrices(skeleton: Skeleton, rotations: Array, root: Array) -> Array:
-    """Joint to world matrices (f, j, 4, 4) for column vectors; arguments as in `world_transforms`."""
+    """Return joint to world matrices (f, j, 4, 4) for column vectors; arguments as in `world_transforms`."""
     positions, world = world_transforms(skeleton, rotations, root)
     out = np.zeros((*rotations.shape[:2], 4, 4))
     out[..., :3, :3] = quat.to_matrix(world)
@@ -72,7 +72,7 @@ def joint_matrices(skeleton: Skeleton, rotations: Array, root: Array) -> Array:
 
 
 def local_rotations(skeleton: Skeleton, world: Array) -> Array:
-    """Local rotations (f, j, 4) from world rotations (f, j, 4): the inverse of `world_transforms`."""
+    """Return local rotations (f, j, 4) from world rotations (f, j, 4): the inverse of `world_transforms`."""
     local = world.copy()
     for joint, parent in enumerate(skeleton.parents):
         if parent >= 0:
@@ -125,7 +125,7 @@ def mass_points(skeleton: Skeleton) -> tuple[NDArray[np.int64], Array, Array]:
 
 
 def centre_of_mass(skeleton: Skeleton, positions: Array, world: Array) -> Array:
-    """Centre of mass (f, 3) from the joints' world positions (f, j, 3) and rotations (f, j, 4)."""
+    """Return the centre of mass (f, 3) from the joints' world positions (f, j, 3) and rotations (f, j, 4)."""
     joints, masses, offsets = mass_points(skeleton)
     places = positions[:, joints] + quat.rotate(world[:, joints], offsets)
     return np.asarray(np.einsum("m,fmx->fx", masses, places))
@@ -270,6 +270,6 @@ def leg_masses(skeleton: Skeleton) -> tuple[tuple[float, float], ...]:
 
 @lru_cache(maxsize=1)
 def dancer_foot() -> tuple[float, float]:
-    """`heel_to_ball` and `ball_height` of the project's own dancer."""
+    """Return `heel_to_ball` and `ball_height` of the project's own dancer."""
     skeleton = dancer_skeleton()
     return heel_to_ball(skeleton), ball_height(skeleton)

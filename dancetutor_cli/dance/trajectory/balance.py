@@ -315,7 +315,7 @@ def _sway(feet: Feet, times: Array, layers: LayerSettings) -> Array:
 
 
 def _shifted(feet: Feet, onto: float, shift: Array, slowness: Array, rate: float) -> Array:
-    """(n, 2): the way of the zero-moment point that moves the weight by `shift` (n,) metres towards the left foot.
+    """Return the way (n, 2) of the zero-moment point that moves the weight by `shift` (n,) metres to the left foot.
 
     onto : largest part of the way to the middle of a foot
     """

@@ -102,7 +102,7 @@ class Occupation:
 
 
 def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context) -> Groove:
-    """At even `times` (n,): in jacks and slow steps, not in streams; where she waits she sways as `waits` says."""
+    """Return the groove at even `times` (n,): in jacks and slow steps, not in streams; a wait sways as `waits` says."""
     settings = context.settings
     numbers, jacks = settings.groove, repeated(plan, times, settings)
     calmer = occupation.tempo * (1.0 - numbers.jack * jacks)
@@ -151,7 +151,7 @@ def _bob(context: Context, times: Array, tempo: Array) -> Array:
 
 
 def latest_side(plan: Plan, times: Array) -> Array:
-    """On which foot (n,) she has stepped last, -1 to 1, positive left, at even times; less where steps are quicker."""
+    """Return which foot (n,) has stepped last, -1 to 1, positive left, at even times; less where steps are quicker."""
     steps = sorted((m.land, 1.0 - 2.0 * side) for side, track in enumerate(plan.feet) for m in track.moves if _to(m))
     if not steps:
         return np.zeros(len(times))
