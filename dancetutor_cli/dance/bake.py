@@ -15,11 +15,11 @@ from dancetutor_cli.dance.footwork.planner import Manner, plan_dance
 from dancetutor_cli.dance.ik.ankles import ease_ankles, rolled_soles
 from dancetutor_cli.dance.ik.full_body import solve_poses
 from dancetutor_cli.dance.ik.targets import FreeHands, free_hands, translated
-from dancetutor_cli.dance.keys import Keys, doubtful, key_times, refined
+from dancetutor_cli.dance.keys import Keys, doubtful_times, key_times, refined
 from dancetutor_cli.dance.layers import Activity, add_fingers, add_layers, curls, glances_at, hand_use, look
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.physics.hair import add_hair
-from dancetutor_cli.dance.pieces import BakedPiece, Piece, PieceRunner, RagdollStyle, cut, in_turn, pieces_of
+from dancetutor_cli.dance.pieces import BakedPiece, Piece, PieceRunner, RagdollStyle, bake_section, in_turn, pieces_of
 from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.rig.body import mass_of
 from dancetutor_cli.dance.settings import Span, state_weights
@@ -78,7 +78,7 @@ def bake_plan(
     run : bakes the pieces of a long song, in turn or in several processes; the result is the same
     """
     pieces = pieces_of(plan, context, fps)
-    return cut(pieces, section or (pieces[0].kept_span[0], pieces[-1].kept_span[1]), run).motion
+    return bake_section(pieces, section or (pieces[0].kept_span[0], pieces[-1].kept_span[1]), run).motion
 
 
 def bake_piece(piece: Piece) -> BakedPiece:
@@ -99,7 +99,7 @@ def bake_piece(piece: Piece) -> BakedPiece:
     at = key_times(plan, piece.fps, *piece.baked)
     keys = (at, *_pose_states(plan, body, hands, at, changes))
     for _ in range(REFINEMENTS):
-        middles = doubtful(skeleton, keys, plan.grips)
+        middles = doubtful_times(skeleton, keys, plan.grips)
         if len(middles):
             between = (middles, *_pose_states(plan, body, hands, middles, changes))
             keys = refined(skeleton, keys, between, plan.grips)

@@ -56,7 +56,7 @@ def _limb_points(skeleton: Skeleton) -> tuple[tuple[BodyPoint, ...], ...]:
     return (*sole_points(skeleton), *((palm,) for palm in palm_points(skeleton)))
 
 
-def doubtful(skeleton: Skeleton, keys: Keys, grips: tuple[Grip, ...] = ()) -> Array:
+def doubtful_times(skeleton: Skeleton, keys: Keys, grips: tuple[Grip, ...] = ()) -> Array:
     """Return the times half-way between keys where a foot or palm near the ground moves between the two keys."""
     times, rotations, root = keys
     transforms = world_transforms(skeleton, rotations, root)

@@ -29,7 +29,7 @@ from dancetutor_cli.dance.pieces import (
     Piece,
     PieceRunner,
     RagdollStyle,
-    cut,
+    bake_section,
     in_processes,
     in_turn,
     pieces_of,
@@ -106,7 +106,7 @@ class Performance:
     def _motion(self, who: Performer, wanted: Cut, style: RagdollStyle | None, run: PieceRunner) -> BakedPiece:
         plan, context, fps = who.plan, who.context, self.request.fps
         wanted = on_the_pad(plan, wanted)
-        done = cut(pieces_of(plan, context, fps, style), (wanted.start, wanted.end), run)
+        done = bake_section(pieces_of(plan, context, fps, style), (wanted.start, wanted.end), run)
         motion = done.motion
         if (entrance := entrance_of(plan, wanted)) is not None:
             piece = entrance_piece(entrance, context, fps, wanted, style)

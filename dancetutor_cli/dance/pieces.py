@@ -192,7 +192,7 @@ def needed_pieces(pieces: Sequence[Piece], start: float, end: float) -> slice:
     return slice(touched[0], touched[-1] + 1)
 
 
-def cut(pieces: list[Piece], section: Span, run: PieceRunner = in_turn) -> BakedPiece:
+def bake_section(pieces: list[Piece], section: Span, run: PieceRunner = in_turn) -> BakedPiece:
     """Bake a section (seconds) of the dance of all these pieces. Only the pieces that it needs are baked."""
     start, end = section
     if not start < end:

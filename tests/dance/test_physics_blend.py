@@ -16,7 +16,7 @@ from dancetutor_cli.dance.motion import Distances, Motion, sample
 from dancetutor_cli.dance.physics.blend import Blend, load_choice, mean_distances
 from dancetutor_cli.dance.physics.pipeline import RagdollOptions, through_ragdoll
 from dancetutor_cli.dance.physics.style import load_style
-from dancetutor_cli.dance.pieces import Piece, RagdollStyle, cut, in_turn, pieces_of
+from dancetutor_cli.dance.pieces import Piece, RagdollStyle, bake_section, in_turn, pieces_of
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig.body import place, sole_points, world_transforms
@@ -186,7 +186,7 @@ def of(style: str) -> Motion:
 
 @cache
 def danced(style: str, span: tuple[float, float]) -> Motion:
-    return cut(pieces_in(style), span, in_turn).motion
+    return bake_section(pieces_in(style), span, in_turn).motion
 
 
 def pieces_in(style: str) -> list[Piece]:
@@ -240,7 +240,7 @@ def test_a_change_in_a_later_piece_is_danced_as_in_one(changing: str, monkeypatc
     for name, seconds in (("LONGEST", 6.0), ("LENGTH", 5.0), ("WITHIN", 1.0)):
         monkeypatch.setattr(f"dancetutor_cli.dance.pieces.{name}", seconds)
     assert len(pieces_in(changing)) > 1
-    again = _soles(cut(pieces_in(changing), (0.0, 13.0), in_turn).motion, times)
+    again = _soles(bake_section(pieces_in(changing), (0.0, 13.0), in_turn).motion, times)
     assert np.abs(whole[0] - again[0]).max() < 1e-3 and np.abs(whole[1] - again[1]).max() < 1e-3
 
 

@@ -105,7 +105,7 @@ class _Foot:
         ]
 
     def held(self, place: Array, turn: Array, stands: list[_Stand]) -> tuple[Array, Array, Flags, Flags, Array]:
-        """Return ankle (f, 3) and turn (f, 4) of a foot, still in its stands; whether heel and ball are held; how far."""
+        """Return ankle (f, 3) and turn (f, 4) of a foot, still in its stands; if heel and ball are held; how far."""
         frames, ball = len(place), place + quat.rotate(turn, self.sole.ball)
         heel_down, on_floor, fixed = (np.zeros(frames, dtype=bool) for _ in range(3))
         moved, turned = np.zeros((frames, 3)), np.zeros((frames, 3))

@@ -8,10 +8,11 @@ import numpy as np
 
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.foot_path import Feet
-from dancetutor_cli.dance.gait import gaze_ahead, walk_pose
+from dancetutor_cli.dance.gait import GaitPose, gaze_ahead, walk_pose
 from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.rig.body import GRAVITY
 from dancetutor_cli.dance.settings import MotionSettings
+from dancetutor_cli.dance.settings_arms import BarSettings
 from dancetutor_cli.dance.settings_body import BodySettings, LookSettings
 from dancetutor_cli.dance.smoothing import Controller, follow, low_pass, smooth, smooth_path
 from dancetutor_cli.dance.trajectory.balance import Pendulum, Rail, balanced_path
@@ -27,7 +28,7 @@ from dancetutor_cli.dance.trajectory.facing import (
     pelvis_yaw,
     reaching,
 )
-from dancetutor_cli.dance.trajectory.groove import Occupation, groove_of, stance
+from dancetutor_cli.dance.trajectory.groove import Groove, Occupation, groove_of, stance
 from dancetutor_cli.dance.trajectory.height import (
     Height,
     HeightGoals,
@@ -41,7 +42,7 @@ from dancetutor_cli.dance.trajectory.height import (
 from dancetutor_cli.dance.trajectory.legs import Course, above_at_rest, leg_room, raised, upright_hips
 from dancetutor_cli.dance.trajectory.momentum import counter_motion
 from dancetutor_cli.dance.units import Array
-from dancetutor_cli.dance.waits import waiting_at
+from dancetutor_cli.dance.waits import WaitMotion, waiting_at
 
 BALANCE, HEIGHT = "the balance", "the height of the body"  # what `softened` may name
 STANDING_HEIGHT = 0.93  # metres, of the centre of mass
@@ -118,66 +119,132 @@ def bake_at_rest(plan: Plan, times: Array, context: Context) -> RoughBake:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """What the dancer does at n even times.
+
+    tempo : (n,) as of `height.tempo_factor`; crouch : (n,) metres, as of `height.jump_crouch`
+    reaching : (n, 2) as of `facing.reaching`; gait : the movements of her walks, None without a walk
+    leaning : (n,) as of `facing.leaning_share`; across : (n,) as of `facing.crossing_share`
+    """
+
+    times: Array
+    tempo: Array
+    crouch: Array
+    reaching: Array
+    gait: GaitPose | None
+    leaning: Array
+    across: Array
+    waiting: WaitMotion
+
+    @property
+    def walks(self) -> Array:
+        """How much (n,) she walks, 0 to 1."""
+        return np.zeros(len(self.times)) if self.gait is None else self.gait.own
+
+    @property
+    def no_palms(self) -> Array:
+        """1 where no hand reaches down to a panel, (n,), 0 where one is there."""
+        return np.asarray(1.0 - self.reaching.max(axis=1))
+
+    def occupation(self, bar: BarSettings) -> Occupation:
+        """Return how busy she is besides the groove: with panels, with the bar and with walks."""
+        at_bar = np.maximum(bar.calmer * self.leaning, np.abs(self.across))
+        return Occupation(self.tempo, self.reaching.sum(axis=1) + at_bar + self.walks, self.waiting.share)
+
+
+def _situation(plan: Plan, times: Array, context: Context) -> Situation:
+    settings = context.settings
+    return Situation(
+        times,
+        tempo=tempo_factor(plan, times, settings),
+        crouch=jump_crouch(plan, times, settings.jump),
+        reaching=reaching(plan.presses, times, settings.hands),
+        gait=walk_pose(plan.walks, times, settings.walk),
+        leaning=leaning_share(plan.grips, times, settings.bar),
+        across=crossing_share(plan.grips, times, settings.across),
+        waiting=waiting_at(plan, times, context),
+    )
+
+
 def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, rough: RoughBake) -> Trajectory:
     """Return the body on even `times` (n,), with feet sampled there. rough : first `bake_at_rest`, then measured"""
-    settings = context.settings
-    held = leaning_share(plan.grips, times, settings.bar)
-    course, softened = _course(plan, times, feet, context, rough)
-    reached = reaching(plan.presses, times, settings.hands)
-    gait = walk_pose(plan.walks, times, settings.walk)
-    own = np.zeros(len(times)) if gait is None else gait.own
-    crouch = jump_crouch(plan, times, settings.jump)
-    tempo = tempo_factor(plan, times, settings)
-    waiting = waiting_at(plan, times, context)
-    across = crossing_share(plan.grips, times, settings.across)
-    at_bar = np.maximum(settings.bar.calmer * held, np.abs(across))
-    occupation = Occupation(tempo, reached.sum(axis=1) + at_bar + own, waiting.share)
-    groove = groove_of(plan, times, occupation, context)
-    leg = settings.body.leg - settings.body.stream_crouch * tempo - crouch
-    bent = bent_down(plan.presses, rough.deeper, times, settings.hands)
-    give = landing_give(plan, times, settings.body)
-    narrow = 1.0 - _straddled(feet, settings)
-    sink = np.maximum(narrow * groove.sink, give) + (0.0 if gait is None else gait.sink)
-    push, catch = (share * (1.0 - reached.max(axis=1)) for share in jump_drive(plan, times, settings.jump))
-    leg = leg + push * (settings.jump.push - leg)
-    leg = leg + catch * (settings.jump.catch - leg)
-    most = settings.body.soft_reach + push * max(settings.jump.push - settings.body.soft_reach, 0.0)
-    most = np.where(feet[0].down | feet[1].down, most, settings.jump.reach)
-    legs = LegGoals(leg, most, sink, narrow * groove.bob, bent, settings.jump.drive * np.maximum(push, catch), tempo)
-    mass_height = height_path(
-        _height_goals(raised(feet, rough.push_off), course, context, legs), plan.flights, settings.body
-    )
+    settings, now = context.settings, _situation(plan, times, context)
+    course, softened = _course(plan, feet, now, context, rough)
+    groove = groove_of(plan, times, now.occupation(settings.bar), context)
+    legs = _leg_goals(plan, feet, now, groove, rough.deeper, settings)
+    height_goals = _height_goals(raised(feet, rough.push_off), course, context, legs)
+    mass_height = height_path(height_goals, plan.flights, settings.body)
     chest, head = chest_and_head(plan, course, gaze_ahead(plan, times, settings.walk), settings)
-    upright = (1.0 - reached.max(axis=1)) * (1.0 - own)
-    loose = (1.0 - held) * upright
+    upright = now.no_palms * (1.0 - now.walks)
     ahead = np.column_stack((np.sin(chest), np.cos(chest)))  # not to where it turns against each step
-    free = loose * _neck_room(head - chest, settings.look)
+    free = (1.0 - now.leaning) * upright * _neck_room(head - chest, settings.look)
     answer = counter_motion(feet, course, mass_height.at(times), free, context.skeleton, settings.arms)
     chest = chest + answer.twist
-    calm = smooth_path(tempo[:, None], np.ones(len(times)), course.rate, settings.body.lean_time)[:, 0]
-    lean = settings.body.lean + settings.body.stream_lean * calm
-    lean = np.radians(lean - held * (1.0 - np.abs(across)) * (lean + settings.bar.lean_back))
-    leant = lean[:, None] * ahead + leaned_across(across, settings.across)
-    tilt = leaning_tilt(plan.presses, course, chest, leant, settings)
-    chest += waiting.turn
-    drop = -np.radians(settings.wait.lean) * waiting.shift / max(settings.wait.shift, 1e-6)
+    tilt = leaning_tilt(plan.presses, course, chest, _lean(now, ahead, course.rate, settings), settings)
+    chest += now.waiting.turn
     chest += np.radians(settings.groove.twist) * groove.sway
     head = limit_head_yaw(head, chest, course.rate, settings)
+    drop = -np.radians(settings.wait.lean) * now.waiting.shift / max(settings.wait.shift, 1e-6)
     drop += np.radians(settings.groove.lean) * groove.sway
     tilt += answer.tilt + drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
-    fold = np.radians(settings.jump.fold) * crouch + np.radians(settings.layers.beat_nod) * groove.beat
+    fold = np.radians(settings.jump.fold) * now.crouch + np.radians(settings.layers.beat_nod) * groove.beat
     tilt += fold[:, None] * np.column_stack((np.sin(chest), np.cos(chest))) + jump_lean(plan, times, settings.jump)
     controller = Controller.of(settings.inertia.chest_frequency, settings.inertia.chest_damping)
-    tilt = follow(tilt, course.rate, controller)
-    height = mass_height.at(times) - course.above[:, 1]
     apart = 1.0 - settings.jump.together * (1.0 - groove.grounded)
-    arms = np.column_stack((apart * answer.swing, apart * answer.raised, groove.pump, groove.carried))
     return Trajectory(
-        times, course.mass, mass_height, course.ground, height, course.yaw, chest, head, tilt, reached,
-        np.zeros((len(times), 2)), np.zeros((len(times), 2)), groove.beat, groove.sway,
-        upright * _pelvic_list(feet, tempo, course.rate, settings.body), arms,
-        (*softened, *((HEIGHT,) if mass_height.softened else ())),
-    )  # fmt: skip
+        times,
+        mass=course.mass,
+        mass_height=mass_height,
+        ground=course.ground,
+        height=mass_height.at(times) - course.above[:, 1],
+        yaw=course.yaw,
+        chest_yaw=chest,
+        head_yaw=head,
+        tilt=follow(tilt, course.rate, controller),
+        reaching=now.reaching,
+        heels=np.zeros((len(times), 2)),
+        knees=np.zeros((len(times), 2)),
+        beat=groove.beat,
+        sway=groove.sway,
+        listed=upright * _pelvic_list(feet, now.tempo, course.rate, settings.body),
+        arms=np.column_stack((apart * answer.swing, apart * answer.raised, groove.pump, groove.carried)),
+        softened=(*softened, *((HEIGHT,) if mass_height.softened else ())),
+    )
+
+
+def _leg_goals(
+    plan: Plan, feet: Feet, now: Situation, groove: Groove, deeper: Array, settings: MotionSettings
+) -> LegGoals:
+    """Return the wanted stance: lower in streams, around jumps, on beats and for palms. deeper : as of `RoughBake`"""
+    body, jump, times = settings.body, settings.jump, now.times
+    length = body.leg - body.stream_crouch * now.tempo - now.crouch
+    push, catch = (share * now.no_palms for share in jump_drive(plan, times, jump))
+    length = length + push * (jump.push - length)
+    length = length + catch * (jump.catch - length)
+    most = body.soft_reach + push * max(jump.push - body.soft_reach, 0.0)
+    narrow = 1.0 - _straddled(feet, settings)
+    sink = np.maximum(narrow * groove.sink, landing_give(plan, times, body))
+    return LegGoals(
+        length,
+        most=np.where(feet[0].down | feet[1].down, most, jump.reach),
+        sink=sink + (0.0 if now.gait is None else now.gait.sink),
+        bob=narrow * groove.bob,
+        bent=bent_down(plan.presses, deeper, times, settings.hands),
+        firm=jump.drive * np.maximum(push, catch),
+        tempo=now.tempo,
+    )
+
+
+def _lean(now: Situation, ahead: Array, rate: float, settings: MotionSettings) -> Array:
+    """Return the lean of the chest (n, 2), a horizontal direction times an angle: forward, at the bar back or aside.
+
+    ahead : (n, 2) unit vectors to where the chest faces
+    """
+    calm = smooth_path(now.tempo[:, None], np.ones(len(now.times)), rate, settings.body.lean_time)[:, 0]
+    lean = settings.body.lean + settings.body.stream_lean * calm
+    lean = np.radians(lean - now.leaning * (1.0 - np.abs(now.across)) * (lean + settings.bar.lean_back))
+    return np.asarray(lean[:, None] * ahead + leaned_across(now.across, settings.across))
 
 
 def _pelvic_list(feet: Feet, tempo: Array, rate: float, body: BodySettings) -> Array:
@@ -202,24 +269,23 @@ def _neck_room(turned: Array, look: LookSettings) -> Array:
     return np.asarray(1.0 - smooth((np.abs(turned) - np.radians(look.neck_easy)) / np.radians(look.neck_room)))
 
 
-def _course(plan: Plan, times: Array, feet: Feet, context: Context, rough: RoughBake) -> tuple[Course, tuple[str, ...]]:
+def _course(
+    plan: Plan, feet: Feet, now: Situation, context: Context, rough: RoughBake
+) -> tuple[Course, tuple[str, ...]]:
     """Return where the body goes over the ground, and which limits had to be softened."""
-    settings, baked = context.settings, rough.trajectory
+    settings, times, baked = context.settings, now.times, rough.trajectory
     yaw = pelvis_yaw(plan, times, settings)
     if baked is not None and rough.keep:
         softened = tuple(what for what in baked.softened if what == BALANCE)
         return Course(times, baked.mass, rough.above, rough.hips, yaw), softened
     pendulum = _pendulum(times, rough)
-    gait = walk_pose(plan.walks, times, settings.walk)
-    if gait is not None:  # who walks has legs that swing slowly, and her weight on the edges of her soles
-        pendulum = replace(pendulum, turning=(1.0 - gait.own)[:, None] * pendulum.turning)
-    waiting = waiting_at(plan, times, context)
-    shift = waiting.shift + (1.0 - waiting.share) * stance(plan, times, context)
+    if now.gait is not None:  # who walks has legs that swing slowly, and her weight on the edges of her soles
+        pendulum = replace(pendulum, turning=(1.0 - now.walks)[:, None] * pendulum.turning)
+    shift = now.waiting.shift + (1.0 - now.waiting.share) * stance(plan, times, context)
     if baked is not None:  # heels that rise to spare their ankles carry nothing; palms do, on their way already
-        up = baked.heels * (1.0 - reaching(plan.presses, times, settings.hands).max(axis=1, keepdims=True))
-        feet = raised(feet, up)
+        feet = raised(feet, baked.heels * now.no_palms[:, None])
     if context.bar is not None:
-        nearer = settings.across.nearer * np.abs(crossing_share(plan.grips, times, settings.across))
+        nearer = settings.across.nearer * np.abs(now.across)
         ahead = context.bar.behind + settings.bar.forward - nearer
         held = has_hand_on_bar(plan.grips, times)
         pendulum = replace(pendulum, rail=Rail(ahead, held, settings.bar.soft))
