@@ -36,7 +36,7 @@ from scipy.optimize import minimize
 
 from dancetutor_cli.feet.preset import MAX_WEIGHT, Preset
 from dancetutor_cli.feet.solver.engine import cost_at
-from dancetutor_cli.feet.solver.tables import DISTANCE_UNIT
+from dancetutor_cli.feet.solver.packing import DISTANCE_UNIT
 from dancetutor_cli.feet.solver.vocabulary import MOST_MS
 
 Floats = NDArray[np.float64]

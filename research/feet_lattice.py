@@ -18,8 +18,16 @@ from numpy.typing import NDArray
 from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.feet.solver.engine import Engine, engine_for
-from dancetutor_cli.feet.solver.store import FACTS, FACTS_KNOWN, LIMB_CODES, NEXT, TERMS_SHIFT, WIDE_ACTION, WIDE_EVENTS
-from dancetutor_cli.feet.solver.tables import DISTANCE_UNIT
+from dancetutor_cli.feet.solver.packing import DISTANCE_UNIT
+from dancetutor_cli.feet.solver.tables import (
+    FACTS,
+    FACTS_KNOWN,
+    LIMB_CODES,
+    NEXT,
+    TERMS_SHIFT,
+    WIDE_ACTION,
+    WIDE_EVENTS,
+)
 from dancetutor_cli.feet.solver.vocabulary import MODELS
 
 FIXED = ("hand", "hand-behind", "unplayable")  # not for a fit: what nobody does where there is another way

@@ -49,17 +49,17 @@ def _solve() -> None:
     """
     from dancetutor_cli.feet.pads import load_pad
     from dancetutor_cli.feet.preset import load_preset
-    from dancetutor_cli.feet.solver import store
+    from dancetutor_cli.feet.solver import tables
     from dancetutor_cli.feet.solver.engine import Engine
     from dancetutor_cli.feet.solver.solve import solve_chart
-    from dancetutor_cli.feet.solver.store import grown
+    from dancetutor_cli.feet.solver.tables import grown
 
     song, preset, pad = load(charts_path() / _SONG), load_preset("thesis"), load_pad(_TYPES[0])
     solve_chart(song.charts[0], preset)
     assert pad is not None
-    tables = Engine(pad, preset).tables
-    for full in (store.MORE_STATES, store.MORE_PATTERNS, store.MORE_PAIRS, store.MORE_TERMS, store.MORE_FACTS):
-        grown(tables, full, 1)
+    empty = Engine(pad, preset).tables
+    for full in (tables.MORE_STATES, tables.MORE_PATTERNS, tables.MORE_PAIRS, tables.MORE_TERMS, tables.MORE_FACTS):
+        grown(empty, full, 1)
 
 
 def _prepare(prepared: dict[str, PreparedFilm], steps_type: str) -> None:

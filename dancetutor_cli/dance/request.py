@@ -10,7 +10,7 @@ from dancetutor_cli.chart.pack_files import find_settings_file
 from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.dance.settings import USUAL, load_settings
-from dancetutor_cli.feet.preset import PresetChoice, choice_of, mismatch, preset_for
+from dancetutor_cli.feet.preset import PresetChoice, choice_of, mismatch_message, preset_for
 from dancetutor_cli.lint.sections import check_part, part_of
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.stored_files import NAMED
@@ -139,7 +139,7 @@ def read_chart(request: DanceRequest, section: str | None = None) -> ChartChoice
         parts = tuple(one for one in chart.players if len(one.notes)) or parts
     presets = tuple(preset_for(part, request.path, choice) for part in parts)
     pairs = zip(parts, presets, strict=True)
-    lines = [f"{part.label}: {unfit}" for part, preset in pairs if (unfit := mismatch(preset, part.steps_type))]
+    lines = [f"{part.label}: {unfit}" for part, preset in pairs if (unfit := mismatch_message(preset, part.steps_type))]
     return ChartChoice(song, chart, parts, presets, tuple(dict.fromkeys(lines)))
 
 

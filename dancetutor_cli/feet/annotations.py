@@ -65,7 +65,7 @@ def step_rows(data: bytes, chart: Chart) -> StepRows:
 
 
 def _columns_at(chart: Chart, tick: int) -> NDArray[np.int16]:
-    """The columns of the steps at a tick, taken from the notes of the chart."""
+    """Return the columns (k,) of the steps at a tick, from the notes of the chart."""
     notes = chart.notes
     first, last = np.searchsorted(notes.tick, [tick, tick + 1])
     return notes.column[first:last][np.isin(notes.kind[first:last], STEP_KINDS)]
@@ -86,7 +86,7 @@ class MeasureLine:
 
 
 def measure_lines(data: bytes, chart: Chart) -> Iterator[MeasureLine]:
-    """The opening lines of a chart's measures that have a comment or may get one.
+    """Yield the opening lines of a chart's measures that have a comment or may get one.
 
     Lines that already hold rows are left out. Lines with a CR in the middle are left out too: some readers end the line
     at the CR, so a comment could hide rows or end too early.
@@ -104,7 +104,7 @@ def measure_lines(data: bytes, chart: Chart) -> Iterator[MeasureLine]:
 
 
 def markers_in(comment: bytes) -> list[re.Match[bytes]]:
-    """The markers in a comment, in order."""
+    """Return the markers in a comment, in order."""
     return list(MARKER.finditer(comment)) if b"{dt1" in comment else []
 
 

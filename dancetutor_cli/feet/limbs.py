@@ -92,7 +92,7 @@ class NotationError(ValueError):
 
 
 def letter(limb: int, part: int) -> str:
-    """The letter of the limb that presses a panel."""
+    """Return the letter of a limb and its part that press a panel."""
     return _LETTERS.get((limb, part), UNKNOWN)
 
 
@@ -174,7 +174,7 @@ class PartnerColours:
 
 
 def hex_colour(rgb: RGB) -> str:
-    """``(255, 138, 31)`` to ``"#ff8a1f"``."""
+    """Return a colour as HTML writes it: ``(255, 138, 31)`` as ``"#ff8a1f"``."""
     return "#{:02x}{:02x}{:02x}".format(*rgb)
 
 
@@ -193,11 +193,11 @@ def read_limb_colours(path: Path) -> LimbColours:
 
 @cache
 def limb_colours() -> LimbColours:
-    """The colours of configs/colours.yaml."""
+    """Return the colours of configs/colours.yaml."""
     return read_limb_colours(config_path("colours.yaml"))
 
 
 @cache
 def partner_colours() -> PartnerColours:
-    """The entry of configs/colours.yaml for the second of two dancers; FileError names what is wrong."""
+    """Return the colours of the second of two dancers in configs/colours.yaml; FileError names what is wrong."""
     return load(config_path("colours.yaml"), _Colours).partner

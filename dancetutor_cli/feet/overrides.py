@@ -40,7 +40,7 @@ class Overrides:
 
     @staticmethod
     def of(cells: dict[tuple[int, int], tuple[int, int]]) -> Overrides:
-        """Make overrides from {(tick, column): (limb, part)}."""
+        """Return the overrides of {(tick, column): (limb, part)}."""
         keys = sorted(cells)
         values = [cells[key] for key in keys]
         return Overrides(

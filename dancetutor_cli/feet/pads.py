@@ -77,7 +77,7 @@ class Pad:
         return tuple(math.degrees(math.atan2(x, y)) % 360 if x or y else None for x, y in self.arrows.tolist())
 
     def mirror_columns(self, *, left_right: bool) -> NDArray[np.int64] | None:
-        """The column of each column's mirror image, left-right or up-down; None if the pad is not symmetric."""
+        """Return the column (c,) of each column's mirror image, left-right or up-down; None without symmetry."""
         sign = np.array([-1.0, 1.0] if left_right else [1.0, -1.0])
         image = np.array(self.centre) + (self.panels - self.centre) * sign
         apart = np.abs(image[:, None] - self.panels[None]).max(axis=2)

@@ -140,7 +140,7 @@ def _begins(marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 
 def _turned(play: Play, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-    """The angle by which the dancer turns between the row before and each row, degrees."""
+    """Return the angles (n,) by which the dancer turns between the row before and each row, degrees."""
     facing = play.facing[rows]
     change = np.abs(np.diff(facing, prepend=facing[:1]))
     return np.asarray(np.minimum(change, 360.0 - np.minimum(change, 360.0)))
@@ -177,7 +177,7 @@ def _weights(
 def _counts(
     play: Play, rows: NDArray[np.int64], stepped: NDArray[np.bool_], settings: PassageSettings
 ) -> dict[str, Any]:
-    """The counts of some rows, as in `Passage`; stepped : (rows, columns), whether each cell has a visible step"""
+    """Return the counts of some rows, as in `Passage`; stepped : (rows, columns), the visible steps"""
 
     def count(*names: str) -> int:
         return int(_marks(play, rows, names).sum())

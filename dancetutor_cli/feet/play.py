@@ -199,7 +199,7 @@ def _cells(
 
 
 def _joined(tables: Sequence[NoteTable]) -> NoteTable:
-    """Concatenate the notes of charts, with the number of the chart above the lowest `_CHART` bits of each tick."""
+    """Return the notes of all charts in one table; above its lowest `_CHART` bits, a tick has the chart's number."""
     if len(tables) == 1:
         return tables[0]
     whole = NoteTable(*(np.concatenate([getattr(one, name) for one in tables]) for name in NoteTable.__slots__))
@@ -217,7 +217,7 @@ def _is_new(ticks: NDArray[np.int64]) -> NDArray[np.bool_]:
 def _roll_taps(
     notes: NoteTable, timing: Timing, rolls: NDArray[np.intp], window: float
 ) -> tuple[NDArray[np.int64], NDArray[np.int16]]:
-    """The tick and the column of every virtual tap, including the heads of rolls."""
+    """Return the tick (t,) and the column (t,) of every virtual tap, including the heads of rolls."""
     ticks, columns = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int16)]
     for note in rolls.tolist():
         chart, head = divmod(int(notes.tick[note]), 1 << _CHART)
@@ -228,7 +228,7 @@ def _roll_taps(
 
 
 def roll_gap(bpm: float, window: float) -> int:
-    """The ticks between virtual taps of a roll that starts at `bpm`: the longest gap of at most `window` seconds."""
+    """Return the ticks between virtual taps of a roll that starts at `bpm`: the longest of at most `window` seconds."""
     for gap in _ROLL_GAPS:
         if gap / TICKS_PER_BEAT * 60.0 / bpm <= window + _EPSILON:
             return gap
@@ -236,7 +236,7 @@ def roll_gap(bpm: float, window: float) -> int:
 
 
 def runs(flags: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """The first index of each run of True and the index after its last, (n, 2)."""
+    """Return the first index of each run of True and the index after its last, (n, 2)."""
     return np.flatnonzero(np.diff(flags, prepend=False, append=False)).reshape(-1, 2)
 
 
@@ -262,13 +262,13 @@ class CrossoverSpan:
 
 
 def spans(play: Play, names: Collection[str]) -> list[tuple[int, int]]:
-    """The first and last row of each run of rows with one of these names of `feet.solver.vocabulary.EVENTS`."""
+    """Return the first and last row of each run of rows with one of these names of `solver.vocabulary.EVENTS`."""
     inside = np.array([any(name in moves for name in names) for moves in play.moves], dtype=bool)
     return [(first, after - 1) for first, after in runs(inside).tolist()]
 
 
 def crossover_spans(play: Play) -> list[CrossoverSpan]:
-    """The spans of rows in which the feet are crossed, in the order of rows."""
+    """Return the spans of rows in which the feet are crossed, in the order of rows."""
     found = []
     for first, last in spans(play, CROSSED):
         full = next((row for row in range(first, last + 1) if FULL in play.moves[row]), None)

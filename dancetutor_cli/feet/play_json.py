@@ -71,7 +71,7 @@ def _second(second: float) -> str:
 
 @lru_cache(maxsize=_MAX_CACHED)
 def _beat(tick: int) -> str:
-    """The text at the start of a row, up to its second."""
+    """Return the text at the start of a row, up to its second."""
     return f'{{"beat": {round(tick / TICKS_PER_BEAT, 6)!r}, "measure": {tick // TICKS_PER_MEASURE}, "second": '
 
 
@@ -82,7 +82,7 @@ def _line(line: int) -> str:
 
 @lru_cache(maxsize=_MAX_CACHED)
 def _end(margin: int, sure: float) -> str:
-    """The text at the end of a row, with the separator after it. sure : `Play.confidence`, `_UNASKED` or `_UNKNOWN`"""
+    """Return the end of a row, with the separator after it. sure : `Play.confidence`, `_UNASKED` or `_UNKNOWN`"""
     text = "null" if margin < 0 else str(margin)
     if sure != _UNASKED:
         text += f', "confidence": {"null" if sure == _UNKNOWN else repr(round(100 * sure, 1))}'
@@ -90,7 +90,7 @@ def _end(margin: int, sure: float) -> str:
 
 
 def _looks(play: Play, shown: NDArray[np.intp]) -> list[str]:
-    """The text of the steps, feet, facing and moves of some rows."""
+    """Return the text of the steps, feet, facing and moves of some rows."""
     moves = np.fromiter(map(id, play.moves), np.int64, len(play.moves)) if play.events is None else play.events
     known: dict[bytes, str] = {} if play.events is None else _text_cache(play.limb.shape[1])
     rows = play.rows
@@ -111,7 +111,7 @@ def _cached_texts(keys: list[bytes], known: dict[bytes, str], say: Callable[[int
 
 @lru_cache(maxsize=64)
 def _text_cache(kind: int | tuple[str, ...]) -> dict[bytes, str]:
-    """The cache of texts by the bytes they are made from.
+    """Return the cache of texts by the bytes they are made from.
 
     kind : the number of columns, for the text of steps, feet, facing and moves; the cost terms, for the text of costs
     """
@@ -119,7 +119,7 @@ def _text_cache(kind: int | tuple[str, ...]) -> dict[bytes, str]:
 
 
 def _bytes(shown: NDArray[np.intp], *arrays: NDArray[Any]) -> list[bytes]:
-    """The bytes of all arrays in each of some rows, as keys of a cache."""
+    """Return the bytes of all arrays in each of some rows, as keys of a cache."""
     table = np.concatenate([np.ascontiguousarray(array[shown]).view(np.uint8) for array in arrays], axis=1)
     keys: list[bytes] = table.view(f"V{table.shape[1]}").ravel().tolist() if table.size else [b""] * len(table)
     return keys

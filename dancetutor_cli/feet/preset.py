@@ -83,12 +83,12 @@ class Preset:
 
 
 def preset_names() -> list[str]:
-    """The names of the presets that come with the program."""
+    """Return the names of the presets that come with the program."""
     return config_names("presets")
 
 
 def default_preset(steps_type: str) -> str:
-    """The name of the default preset of a steps type."""
+    """Return the name of the default preset of a steps type."""
     return _DEFAULTS.get(steps_type.lower().partition("-")[0], DEFAULT_PRESET)
 
 
@@ -187,7 +187,7 @@ def _base(source: MarkedYaml, name: str, seen: tuple[Path, ...], confined: bool)
 def _values(
     source: MarkedYaml, group: str, given: Mapping[str, Any], model: str, base: Preset | None
 ) -> tuple[tuple[str, Any], ...]:
-    """The switches, weights or curves in the model's order: the given values, else those of the extended preset."""
+    """Return switches, weights or curves in the model's order: the given ones, else those of the extended preset."""
     known: tuple[str, ...] = getattr(MODELS[model], group)
     source.check_names((group,), given, known)
     values = {**dict(getattr(base, group) if base else ()), **given}
@@ -251,7 +251,7 @@ def choice_of(given: str | None, named: Sequence[tuple[Condition, str]] = ()) ->
     return PresetChoice(None, tuple((when, load_preset(name, confined=True)) for when, name in named))
 
 
-def mismatch(preset: Preset, steps_type: str) -> str | None:
+def mismatch_message(preset: Preset, steps_type: str) -> str | None:
     """Return a message if a preset was made for other pads than this steps type's, else None."""
     if preset.is_for(steps_type):
         return None

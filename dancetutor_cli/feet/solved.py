@@ -54,8 +54,8 @@ def solve_song(song: Song, charts: Sequence[tuple[Chart, Preset]]) -> Iterator[S
 
 
 def _rows(charts: Sequence[tuple[Chart, Preset]]) -> list[Rows | None]:
-    """The rows of each chart, None without a pad; charts with the same pad, timing and roll window are prepared
-    together.
+    """Return the rows of each chart, None without a pad; charts with the same pad, timing and roll window are
+    prepared together.
     """
     alike: dict[tuple[str, int, float], list[int]] = defaultdict(list)
     for place, (chart, preset) in enumerate(charts):

@@ -227,7 +227,7 @@ def read_sme(song: Song, chart: Chart) -> ChartData:
 
 
 def editor_file(song: Path) -> Path | None:
-    """The path of the `data.sme` beside a chart file, or None; a broken link counts as a file."""
+    """Return the path of the `data.sme` beside a chart file, or None; a broken link counts as a file."""
     path = song.parent / FILE_NAME
     if song.suffix.lower() == UCS_SUFFIX:  # `data.sme` holds the charts of a .sm or .ssc file in the same folder
         return None
@@ -236,12 +236,12 @@ def editor_file(song: Path) -> Path | None:
 
 
 def place_in_type(song: Song, chart: Chart) -> int:
-    """The index of a chart among the charts of its steps type, in file order; `data.sme` identifies charts by it."""
+    """Return the index of a chart among the charts of its steps type, in file order, as `data.sme` counts them."""
     return [c.index for c in song.charts if c.steps_type == chart.steps_type].index(chart.index)
 
 
 def chart_entry(data: Any, chart: Chart, place: int) -> Any:
-    """The value of a chart in the parsed file, or None."""
+    """Return the value of a chart in the parsed file, or None."""
     parity = data.get("parity") if isinstance(data, dict) else None
     charts = parity.get(chart.steps_type) if isinstance(parity, dict) else None
     return charts[place] if isinstance(charts, list) and place < len(charts) else None
@@ -265,7 +265,7 @@ def overrides_of(entry: Any) -> Iterator[tuple[float, int, str | int]]:
 
 
 def tick_of(beat: float) -> int:
-    """The tick of a beat that SMEditor has rounded to three digits."""
+    """Return the tick of a beat that SMEditor has rounded to three digits."""
     return round(beat * TICKS_PER_BEAT)
 
 

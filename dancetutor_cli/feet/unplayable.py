@@ -17,8 +17,8 @@ from dancetutor_cli.feet.preset import HAND, LEAP, DropReason
 UNPLAYABLE = "unplayable"  # the move name of a row with an unplayed note
 SAME_TIME = 1e-6  # seconds
 _NOT_WITHOUT = ("hand", "jump", "bracket")  # beginnings of the moves that a row loses with an unplayed note
-REASON_TEXTS = {
-    DropReason.LIMBS: "more panels at once than limbs",
+_BECAUSE = {
+    DropReason.LIMBS: "there are more panels at once than limbs",
     DropReason.LEAP: "a foot would have to leap",
     DropReason.HAND: "a hand would have to come down again at once",
 }
@@ -75,8 +75,10 @@ def dropped_notes_message(gone: Sequence[DroppedNote]) -> str:
     if not gone:
         return ""
     counts = Counter(one.reason for one in gone)
-    reasons = ", ".join(f"{counts[why]} {REASON_TEXTS[why]}" for why in DropReason if counts[why])
-    return f"{len(gone)} note{'s' if len(gone) > 1 else ''} not played: {reasons}"
+    many = f"{len(gone)} note{'s' if len(gone) > 1 else ''} not played"
+    if len(counts) == 1:
+        return f"{many}, because {_BECAUSE[gone[0].reason]}"
+    return f"{many}: {', '.join(f'{counts[why]} because {_BECAUSE[why]}' for why in DropReason if counts[why])}"
 
 
 def _leaps(play: Play, pad: Pad) -> Iterator[tuple[int, int, DropReason]]:

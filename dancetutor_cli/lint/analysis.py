@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.feet.preset import PresetChoice, mismatch, preset_for
+from dancetutor_cli.feet.preset import PresetChoice, mismatch_message, preset_for
 from dancetutor_cli.lint.check import check_chart, check_file, merged_by_foot
 from dancetutor_cli.lint.findings import AUTO, Cause, Figures, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
@@ -54,7 +54,7 @@ def chart_result(subject: ChartSubject, task: AnalyzeTask) -> ChartResult:
         causes=causes,
         ambiguous=tuple(_ambiguous(subject)) if task.want_rows else None,
         preset=None if play is None else play.preset,
-        mismatch=None if play is None else mismatch(preset, chart.steps_type),
+        mismatch=None if play is None else mismatch_message(preset, chart.steps_type),
         hash=chart_hash(subject.song, chart),
     )
 

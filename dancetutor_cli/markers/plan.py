@@ -14,7 +14,7 @@ from dancetutor_cli.chart.names import is_lights
 from dancetutor_cli.chart.players import player_charts, written_parts
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.annotations import step_rows
-from dancetutor_cli.feet.preset import Preset, mismatch
+from dancetutor_cli.feet.preset import Preset, mismatch_message
 from dancetutor_cli.feet.solved import solve_song
 from dancetutor_cli.markers import edit
 from dancetutor_cli.markers.model import ChartFeet, CheckLine, NoteChange, row_letters
@@ -53,7 +53,7 @@ def solve_charts(song: Song, charts: Sequence[Chart], preset_of: Callable[[Chart
             f"{song.path}: there is no pad for {', '.join(sorted(padless))}, so these charts get no feet"
         )
     for chart in (one.chart for one in found.charts):
-        if unfit := mismatch(preset_of(chart), chart.steps_type):
+        if unfit := mismatch_message(preset_of(chart), chart.steps_type):
             found.notes.append(f"{song.path}: {chart.label}: {unfit}")
     return found
 

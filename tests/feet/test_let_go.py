@@ -95,6 +95,7 @@ def test_it_is_reported_in_one_line() -> None:
         DroppedNote(2.0, 5, 2, DropReason.LIMBS),
     ]
     assert dropped_notes_message(found) == (
-        "3 notes not played: 1 more panels at once than limbs, 2 a foot would have to leap"
+        "3 notes not played: 1 because there are more panels at once than limbs, 2 because a foot would have to leap"
     )
-    assert dropped_notes_message(()) == "" and dropped_notes_message(found[:1]).startswith("1 note not played")
+    assert dropped_notes_message(found[:1]) == "1 note not played, because a foot would have to leap"
+    assert dropped_notes_message(()) == ""

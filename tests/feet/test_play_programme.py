@@ -16,9 +16,9 @@ from dancetutor_cli.feet.play import Ambiguity, Rows
 from dancetutor_cli.feet.preset import Preset, load_preset, preset_names
 from dancetutor_cli.feet.solver.alternatives import alternatives
 from dancetutor_cli.feet.solver.engine import Engine, _arrays, _nodes, engine_for
+from dancetutor_cli.feet.solver.packing import empty_moves
 from dancetutor_cli.feet.solver.solve import solve_rows
-from dancetutor_cli.feet.solver.store import COST, FACTS, FIRST, LIMB_CODES, MOVES, NEXT, TIMES, WIDE_ACTION
-from dancetutor_cli.feet.solver.tables import moves
+from dancetutor_cli.feet.solver.tables import COST, FACTS, FIRST, LIMB_CODES, MOVES, NEXT, TIMES, WIDE_ACTION
 
 PRESETS = {name: load_preset(name) for name in preset_names()}
 Ways = dict[tuple[int, ...], int]
@@ -165,7 +165,7 @@ def test_little_room_changes_nothing(corpus_rows: list[tuple[str, Rows]]) -> Non
         pad, preset = pad_of(steps_type), PRESETS["itg"]
         usual, little = Engine(pad, preset), Engine(pad, preset)
         expected = usual.cheapest(rows, None, margins=True)
-        little._making = little._making._replace(moves=moves(len(preset.weights), 1))
+        little._making = little._making._replace(moves=empty_moves(len(preset.weights), 1))
         nodes = usual._run(_arrays(rows, None), usual._empty_path(*rows.steps.shape, margins=False))
         used = int(nodes.row[len(rows) + 1, FIRST])
         for room in (1, used, used + 1):

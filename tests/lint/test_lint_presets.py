@@ -19,7 +19,15 @@ from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import Selection
 from dancetutor_cli.commands.analyze import command as analyze
 from dancetutor_cli.dance.request import DanceRequest, choice_for, read_chart
-from dancetutor_cli.feet.preset import Preset, PresetChoice, choice_of, load_preset, mismatch, preset_for, preset_names
+from dancetutor_cli.feet.preset import (
+    Preset,
+    PresetChoice,
+    choice_of,
+    load_preset,
+    mismatch_message,
+    preset_for,
+    preset_names,
+)
 from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.media.encoder import Encoding
 from dancetutor_cli.film.work.batch import BatchRequest, film_list
@@ -183,8 +191,8 @@ def _noting(used: list[str], work: Callable[..., Any]) -> Callable[..., Any]:
 
 def test_a_preset_for_other_pads_works_and_says_so(song: Path) -> None:
     itg, pump = load_preset("itg"), load_preset("pump")
-    assert mismatch(itg, "dance-double") is None and mismatch(pump, "pump-single") is None
-    assert mismatch(pump, "dance-single") == "preset 'pump' was made for pump pads, not for dance-single"
+    assert mismatch_message(itg, "dance-double") is None and mismatch_message(pump, "pump-single") is None
+    assert mismatch_message(pump, "dance-single") == "preset 'pump' was made for pump pads, not for dance-single"
     choice = read_chart(DanceRequest(song, Selection(index=0), "pump"))
     assert choice.warnings == ("dance-single Easy 3: preset 'pump' was made for pump pads, not for dance-single",)
     request = film_request(

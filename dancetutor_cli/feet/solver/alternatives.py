@@ -17,7 +17,7 @@ from dancetutor_cli.feet.play import Play, Rows, StepKind
 from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.feet.solver.engine import Engine, Layers, engine_for
 from dancetutor_cli.feet.solver.solve import forced_limbs, play_of
-from dancetutor_cli.feet.solver.store import COST, FACTS, LIMB_CODES, NEXT, WIDE_ACTION
+from dancetutor_cli.feet.solver.tables import COST, FACTS, LIMB_CODES, NEXT, WIDE_ACTION
 
 # The next best plays: the cheapest ways that differ in at least one limb, and the cost terms that decide.
 #

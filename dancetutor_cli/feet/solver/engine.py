@@ -13,18 +13,18 @@ from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.play import Rows
 from dancetutor_cli.feet.preset import Curve, Preset
-from dancetutor_cli.feet.solver import store
+from dancetutor_cli.feet.solver import tables
 from dancetutor_cli.feet.solver.compiled import runs_as_python
-from dancetutor_cli.feet.solver.solvers import EXPLAIN, solve_itg, solve_thesis
-from dancetutor_cli.feet.solver.store import RowArrays, RowStates, SolverPath, clear_tables, empty_tables, grown
-from dancetutor_cli.feet.solver.tables import (
+from dancetutor_cli.feet.solver.packing import (
     MOST_MOVES,
     UNPLAYED_CODE,
     Making,
     Rules,
+    empty_moves,
     geometry,
-    moves,
 )
+from dancetutor_cli.feet.solver.solvers import EXPLAIN, solve_itg, solve_thesis
+from dancetutor_cli.feet.solver.tables import RowArrays, RowStates, SolverPath, clear_tables, empty_tables, grown
 from dancetutor_cli.feet.solver.techniques import limits, long_ways
 from dancetutor_cli.feet.solver.vocabulary import MODELS, MOST_MS
 
@@ -32,19 +32,19 @@ from dancetutor_cli.feet.solver.vocabulary import MODELS, MOST_MS
 
 
 def curve_table(preset: Preset) -> NDArray[np.int64]:
-    """The costs of every curve of a preset at every millisecond from 0 on, (curves, MOST_MS + 1)."""
+    """Return the cost of every curve of a preset at every millisecond from 0 on, int64 (curves, MOST_MS + 1)."""
     every = np.arange(MOST_MS + 1)
     return np.array([cost_at(curve, every) for _, curve in preset.curves], dtype=np.int64).reshape(-1, len(every))
 
 
 @lru_cache(maxsize=16)
 def whole_curve(curve: Curve) -> NDArray[np.int64]:
-    """The costs of a curve at 0, 1, 2 ... up to its last knot; beyond it, the curve is level."""
+    """Return the costs (m,) of a curve at 0, 1, 2 ... milliseconds up to its last knot; beyond it, it is level."""
     return cost_at(curve, np.arange(max(int(curve[-1][0]), 0) + 1))
 
 
 def cost_at(curve: Curve, milliseconds: NDArray[np.int64]) -> NDArray[np.int64]:
-    """The costs of a curve at some times: linear between its knots, rounded down, and level beyond them."""
+    """Return the costs (n,) of a curve at times (n,): linear between its knots, rounded down, and level beyond them."""
     knots = np.array(curve, dtype=np.int64)
     after = np.minimum(np.searchsorted(knots[:, 0], milliseconds, side="right").clip(min=1), len(knots) - 1)
     before = np.maximum(after - 1, 0)
@@ -78,7 +78,7 @@ class Engine:
             limits(),
             long_ways(pad),
         )
-        self._making = Making(rules, moves(len(preset.weights)))
+        self._making = Making(rules, empty_moves(len(preset.weights)))
         self.tables = empty_tables(len(preset.weights))
         self._node = np.zeros(_NODES_KEPT, dtype=np.int64)
         self._untold = (
@@ -98,21 +98,21 @@ class Engine:
         details : whether to find the costs, the events, the feet and the facing of each row
         """
         arrays, (n, c) = _arrays(rows, forced), rows.steps.shape
-        found, at_once = self._empty_path(n, c, margins=margins), details and _nodes_of(n, c) <= _NODES_KEPT
-        found = self._with_detail_arrays(found) if at_once else found
-        self._run(arrays, found)  # for a long chart, the nodes are freed before the detail arrays are made
-        return self.with_details(rows, found) if details and not at_once else found
+        path, at_once = self._empty_path(n, c, margins=margins), details and _nodes_of(n, c) <= _NODES_KEPT
+        path = self._with_detail_arrays(path) if at_once else path
+        self._run(arrays, path)  # for a long chart, the nodes are freed before the detail arrays are made
+        return self.with_details(rows, path) if details and not at_once else path
 
     def first_without(self, rows: Rows, edits: NDArray[np.int64]) -> int:
         """Return the index of the first edit after which the cheapest way has no doublestep in its row, or the number
         of edits.
 
-        rows : changed in place and restored; edits : int64 (k, 6), see `store.EDIT_ROW`; each edit is tried alone
+        rows : changed in place and restored; edits : int64 (k, 6), see `tables.EDIT_ROW`; each edit is tried alone
         """
         self._start_anew_if_full()
         (n, c), arrays = rows.steps.shape, _arrays(rows, None)
-        found, nodes = self._empty_path(n, c, margins=False)._replace(edit=edits), self._room(n, c)
-        return self._run_to_end(0, arrays, nodes, found)
+        path, nodes = self._empty_path(n, c, margins=False)._replace(edit=edits), self._room(n, c)
+        return self._run_to_end(0, arrays, nodes, path)
 
     def cost_and_events(self, rows: Rows, forced: NDArray[np.int64] | None = None) -> tuple[int, NDArray[np.int64]]:
         """Return the cost of the cheapest way through rows, and the events of each row, (n,) bits of
@@ -120,14 +120,15 @@ class Engine:
         """
         arrays, path = _arrays(rows, forced), self._empty_path(*rows.steps.shape, margins=False)
         nodes = self._run(arrays, path)
-        return int(nodes.row[len(rows), store.BASE]), self.tables.wide[path.move, store.WIDE_EVENTS] & store.EVENT_BITS
+        events = self.tables.wide[path.move, tables.WIDE_EVENTS] & tables.EVENT_BITS
+        return int(nodes.row[len(rows), tables.BASE]), events
 
     def layers(self, rows: Rows, forced: NDArray[np.int64] | None = None) -> Layers:
         """Return every state that the rows can end in, from which ways other than the cheapest are found."""
         arrays = _arrays(rows, forced)
         nodes = self._run(arrays, self._empty_path(*rows.steps.shape, margins=False))
         t = self.tables
-        numbers = [store.START, *t.transition[nodes.transition, store.TO_LAYER].tolist()]
+        numbers = [tables.START, *t.transition[nodes.transition, tables.TO_LAYER].tolist()]
         spans = {number: t.layer[number].tolist() for number in set(numbers)}
         states = {number: t.layer_state[first : first + size].tolist() for number, (first, size) in spans.items()}
         return Layers([states[number] for number in numbers], arrays.elapsed.tolist(), arrays.pattern.tolist(), t.pair)
@@ -135,47 +136,47 @@ class Engine:
     def path_along(self, path: list[int]) -> SolverPath:
         """Return the way through rows with these moves, without margins."""
         move = np.array(path, dtype=np.int32)
-        columns, action = np.arange(len(self.pad)), self.tables.wide[move, store.WIDE_ACTION][:, None]
+        columns, action = np.arange(len(self.pad)), self.tables.wide[move, tables.WIDE_ACTION][:, None]
         code, nothing = action >> 3 * columns & 7, np.empty(0, dtype=np.int64)
         return SolverPath(
             move,
             np.where(code == UNPLAYED_CODE, Limb.UNPLAYED, code - 1).astype(np.int8),
-            (action >> store.PART_SHIFT + 2 * columns & 3).astype(np.uint8),
+            (action >> tables.PART_SHIFT + 2 * columns & 3).astype(np.uint8),
             nothing,
             nothing.astype(np.uint8),
             *self._untold,
         )
 
-    def with_details(self, rows: Rows, found: SolverPath) -> SolverPath:
+    def with_details(self, rows: Rows, path: SolverPath) -> SolverPath:
         """Return a way with the costs, the events, the feet and the facing of each row."""
-        details = self._with_detail_arrays(found)
+        details = self._with_detail_arrays(path)
         self._call(_arrays(rows, None), EXPLAIN, _nodes(0, self._node), details)
         return details
 
-    def _with_detail_arrays(self, found: SolverPath) -> SolverPath:
-        n = len(found.move)
-        return found._replace(
+    def _with_detail_arrays(self, path: SolverPath) -> SolverPath:
+        n = len(path.move)
+        return path._replace(
             events=np.empty(n, dtype=np.int32),
             feet=np.empty((n, 2), dtype=np.int16),
             facing=np.empty(n, dtype=np.float64),
             cost=np.empty((n + 1, len(self.terms)), dtype=np.int32),
         )
 
-    def _call(self, arrays: RowArrays, start: int, nodes: RowStates, found: SolverPath) -> tuple[int, int]:
+    def _call(self, arrays: RowArrays, start: int, nodes: RowStates, path: SolverPath) -> tuple[int, int]:
         # numpy warns about integers of hash functions that overflow, as they do in compiled code
         with np.errstate(over="ignore") if runs_as_python() else nullcontext():
-            return self._solve(arrays, start, self.tables, nodes, self._making, found)
+            return self._solve(arrays, start, self.tables, nodes, self._making, path)
 
-    def _run(self, arrays: RowArrays, found: SolverPath) -> RowStates:
+    def _run(self, arrays: RowArrays, path: SolverPath) -> RowStates:
         self._start_anew_if_full()
         nodes = self._room(*arrays.steps.shape)
-        self._run_to_end(0, arrays, nodes, found)
+        self._run_to_end(0, arrays, nodes, path)
         return nodes
 
     def _start_anew_if_full(self) -> None:
         counts = self.tables.counts
-        has_many_facts = counts[store.FACTS_KNOWN] > store.FACTS_MASK // 2
-        if has_many_facts or counts[store.MOVES] > _MOST_MOVES_KEPT or counts[store.EDGES] > _MOST_EDGES_KEPT:
+        has_many_facts = counts[tables.FACTS_KNOWN] > tables.FACTS_MASK // 2
+        if has_many_facts or counts[tables.MOVES] > _MOST_MOVES_KEPT or counts[tables.EDGES] > _MOST_EDGES_KEPT:
             clear_tables(self.tables)
 
     def _room(self, n: int, c: int) -> RowStates:
@@ -192,19 +193,19 @@ class Engine:
             *self._untold,
         )
 
-    def _run_to_end(self, start: int, arrays: RowArrays, nodes: RowStates, found: SolverPath) -> int:
+    def _run_to_end(self, start: int, arrays: RowArrays, nodes: RowStates, path: SolverPath) -> int:
         """Run the kernel from a row or an edit on, with more memory whenever it asks for it; return where the kernel
         ended.
         """
         wanted = -1
-        while wanted != store.DONE:
-            start, wanted = self._call(arrays, start, nodes, found)
-            if wanted == store.MORE_NODES:
-                _make_room(nodes, 0 if len(found.edit) else start)
-            elif wanted == store.MORE_SCRATCH:
-                room = moves(len(self.preset.weights), 2 * len(self._making.moves.packed))
+        while wanted != tables.DONE:
+            start, wanted = self._call(arrays, start, nodes, path)
+            if wanted == tables.MORE_NODES:
+                _make_room(nodes, 0 if len(path.edit) else start)
+            elif wanted == tables.MORE_SCRATCH:
+                room = empty_moves(len(self.preset.weights), 2 * len(self._making.moves.packed))
                 self._making = self._making._replace(moves=room)
-            elif wanted != store.DONE:
+            elif wanted != tables.DONE:
                 self.tables = grown(self.tables, wanted, len(arrays.tick))
         return start
 
@@ -220,7 +221,7 @@ def _arrays(rows: Rows, forced: NDArray[np.int64] | None) -> RowArrays:
 
 
 def _nodes_of(rows: int, columns: int) -> int:
-    """The number of words for nodes that a chart is first given."""
+    """Return the number of words for nodes that a chart of so many rows and columns is first given."""
     return rows * (_NODES_A_ROW + columns) + 2 * MOST_MOVES
 
 
@@ -233,7 +234,7 @@ def _make_room(nodes: RowStates, row: int) -> None:
 
     The array is resized in place, so that the memory does not have to hold the old and the new array together.
     """
-    used, room = int(nodes.row[row + 1, store.FIRST]), len(nodes.node)
+    used, room = int(nodes.row[row + 1, tables.FIRST]), len(nodes.node)
     like_this = used * len(nodes.transition) // max(row, 1) * 21 // 20 + 2 * MOST_MOVES
     nodes.node.resize(min(max(like_this, room * 9 // 8 + MOST_MOVES), 2 * room), refcheck=False)
 
@@ -252,9 +253,9 @@ class Layers:
     pair: NDArray[np.int64]
 
     def moves(self, row: int, state: int) -> range:
-        """The indices of the moves of a state in a row."""
+        """Return the indices of the moves of a state in a row."""
         key, size = self.pattern[row] << 32 | state, len(self.pair)
-        at = (key * store.GOLDEN & (1 << 64) - 1) >> 32 & size - 1
+        at = (key * tables.GOLDEN & (1 << 64) - 1) >> 32 & size - 1
         while self.pair[at, 0] != key:
             at = at + 1 & size - 1
         packed = int(self.pair[at, 1])

@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 
 from dancetutor_cli.feet.solver.compiled import inner_kernel
+from dancetutor_cli.feet.solver.packing import DISTANCE_UNIT, EPSILON, LEFT, MIDDLE, RIGHT
 from dancetutor_cli.feet.solver.state import LAST, LEFT_AT, LEFT_HELD, LEFT_LIFTED, RIGHT_AT, SIDE, turn
-from dancetutor_cli.feet.solver.tables import DISTANCE_UNIT, EPSILON, LEFT, MIDDLE, RIGHT
 from dancetutor_cli.feet.solver.vocabulary import EVENTS, MODELS
 
 (
@@ -51,7 +51,7 @@ _WIDE = 40  # 1/20 panels: feet farther apart than this are stretched
 
 @inner_kernel
 def reserved_panels(s, foot, panels):  # type: ignore[no-untyped-def]
-    """The panels that a foot holds, as bits. panels : `Geometry.panels`"""
+    """Return the panels that a foot holds, as bits. panels : `Geometry.panels`"""
     held, place = s[LEFT_HELD + foot], s[foot]
     mask = 1 << panels[place, foot, 0] if held & 1 else 0
     return mask | 1 << panels[place, foot, 1] if held & 2 else mask

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dancetutor_cli.feet.solver import tables
+from dancetutor_cli.feet.solver import packing
 from dancetutor_cli.feet.solver.compiled import inner_kernel
 from dancetutor_cli.feet.solver.itg_costs import (
     EVENT_HAND,
@@ -30,8 +30,8 @@ from dancetutor_cli.feet.solver.itg_costs import (
 )
 from dancetutor_cli.feet.solver.state import LAST, LEFT_AT, LEFT_HELD, LEFT_HOLDS, NUMBERS, RIGHT_AT, pack, unpack
 
-_MASK = (1 << tables.COLUMN_BITS) - 1
-_FORCED = (1 << 3 * tables.COLUMN_BITS) - 1
+_MASK = (1 << packing.COLUMN_BITS) - 1
+_FORCED = (1 << 3 * packing.COLUMN_BITS) - 1
 BEFORE, AFTER, PRESS, PANELS, LEFT_WAYS, RIGHT_WAYS, LEFT_TO, RIGHT_TO = range(8)  # rows of `Moves.scratch`
 
 
@@ -53,7 +53,7 @@ class _ItgRow(NamedTuple):
 
 @inner_kernel
 def start_itg(home):  # type: ignore[no-untyped-def]
-    """The packed starting state: both feet on their home panels, no last leg."""
+    """Return the packed starting state: both feet on their home panels, no last leg."""
     return home[0] | home[1] << 5
 
 
@@ -119,14 +119,14 @@ def _emit(out, m, asked, holders, switched, rules):  # type: ignore[no-untyped-d
     pressed[4], pressed[5] = left, right
     feet = pressed[4:6]
     ended = pressed[6:9]
-    ended[0] = row >> tables.RELEASED & _MASK if row >> tables.FRESH & 1 else np.int64(0)
-    ended[1], ended[2] = row >> tables.RELEASED & _MASK, asked.forced >> tables.EARLIER & _MASK
+    ended[0] = row >> packing.RELEASED & _MASK if row >> packing.FRESH & 1 else np.int64(0)
+    ended[1], ended[2] = row >> packing.RELEASED & _MASK, asked.forced >> packing.EARLIER & _MASK
     facts, events = charge_feet(before, s, feet, ended, terms, rules)
     if left or right:
         posed, happened = charge_pose(before, s, feet, terms, rules)
         facts |= posed
         events |= happened
-    holds, rolls = row >> tables.HOLDS & _MASK, row >> tables.ROLLS & _MASK
+    holds, rolls = row >> packing.HOLDS & _MASK, row >> packing.ROLLS & _MASK
     for foot in range(2):
         held = reserved_panels(before, foot, g.panels)
         if switched >= 0:
@@ -136,14 +136,14 @@ def _emit(out, m, asked, holders, switched, rules):  # type: ignore[no-untyped-d
         _hold(
             s,
             foot,
-            (held & ~(pressed[foot] & (row >> tables.ROLL_TAPS))) & mine | pressed[foot] & holds | rolled,
+            (held & ~(pressed[foot] & (row >> packing.ROLL_TAPS))) & mine | pressed[foot] & holds | rolled,
             g.panels,
         )
     if left and right:
         s[LAST] = 0
     elif left or right:
         s[LAST] = 1 if left else 2
-    charge_mines(before, s, feet, row >> tables.MINES & _MASK, terms, rules)
+    charge_mines(before, s, feet, row >> packing.MINES & _MASK, terms, rules)
     if switched >= 0:
         near = g.near[before[LEFT_AT if pressed[1] else RIGHT_AT]] >> switched & 1  # near the foot that takes over
         terms[NEAR_HOLDSWITCH if near else HOLDSWITCH] = w[NEAR_HOLDSWITCH if near else HOLDSWITCH]
@@ -152,14 +152,14 @@ def _emit(out, m, asked, holders, switched, rules):  # type: ignore[no-untyped-d
     for p in range(g.place.shape[0]):
         if not steps >> p & 1:
             continue
-        limb = tables.UNPLAYED_CODE
+        limb = packing.UNPLAYED_CODE
         for j in range(4):
             if pressed[j] >> p & 1:
                 limb = j + 1
         action |= limb << 3 * p
         if limb <= 2 and g.panels[s[limb - 1], limb - 1, 1] >= 0:
             part |= (1 if g.panels[s[limb - 1], limb - 1, 0] == p else 2) << 2 * p
-        if limb == tables.UNPLAYED_CODE:
+        if limb == packing.UNPLAYED_CODE:
             terms[UNPLAYABLE] += w[UNPLAYABLE]
             events |= EVENT_UNPLAYABLE
         elif limb > 2:
@@ -170,8 +170,8 @@ def _emit(out, m, asked, holders, switched, rules):  # type: ignore[no-untyped-d
         if s[LEFT_HOLDS + hand]:
             terms[HAND_HOLD] += w[HAND_HOLD]
     wide = out.wide[m]
-    wide[tables.MOVE_KEY], wide[tables.MOVE_ACTION], wide[tables.MOVE_PART] = pack(s), action, part
-    wide[tables.MOVE_TIMED], wide[tables.MOVE_EVENTS] = facts, events
+    wide[packing.MOVE_KEY], wide[packing.MOVE_ACTION], wide[packing.MOVE_PART] = pack(s), action, part
+    wide[packing.MOVE_TIMED], wide[packing.MOVE_EVENTS] = facts, events
     return m + 1
 
 
@@ -187,12 +187,12 @@ def _fits(pressed, forced, c):  # type: ignore[no-untyped-def]
 
 @inner_kernel
 def _outermost(mask, places, side):  # type: ignore[no-untyped-def]
-    """The leftmost (`side` -1) or rightmost (1) panel of a mask, or -1; of two equal ones, the one further back."""
+    """Return the leftmost (`side` -1) or rightmost (1) panel of a mask, or -1; of equal ones, the one further back."""
     found = -1
-    for p in range(tables.COLUMN_BITS):
+    for p in range(packing.COLUMN_BITS):
         if mask >> p & 1:
             ahead = side * (places[p, 0] - places[found, 0]) if found >= 0 else 1.0
-            if ahead > tables.EPSILON or (ahead > -tables.EPSILON and places[p, 1] < places[found, 1]):
+            if ahead > packing.EPSILON or (ahead > -packing.EPSILON and places[p, 1] < places[found, 1]):
                 found = p
     return found
 
@@ -215,7 +215,7 @@ def _with_hands(out, m, asked, switched, rules):  # type: ignore[no-untyped-def]
     if crowded and hands:
         leftmost = _outermost(rest, g.left, -1)
         rightmost = _outermost(rest & ~(1 << leftmost) if left_free and leftmost >= 0 else rest, g.left, 1)
-    rolls = asked.row >> tables.ROLLS & _MASK
+    rolls = asked.row >> packing.ROLLS & _MASK
     choices = c if hands else 0
     for i in range(-1, choices):
         if i >= 0 and (not (rest >> i & 1 and left_free) or (crowded and i != leftmost)):
@@ -290,15 +290,15 @@ def expand_itg(key, row, forced, rules, out):  # type: ignore[no-untyped-def]
     g, switches = rules.geometry, rules.switches
     before, keepers = out.scratch[BEFORE], out.scratch[PANELS]
     unpack(key, before)
-    steps = (row >> tables.TAPS | row >> tables.HOLDS | row >> tables.ROLLS | row >> tables.ROLL_TAPS) & _MASK
-    released = row >> tables.RELEASED & _MASK
+    steps = (row >> packing.TAPS | row >> packing.HOLDS | row >> packing.ROLLS | row >> packing.ROLL_TAPS) & _MASK
+    released = row >> packing.RELEASED & _MASK
     for foot in range(2):
         _hold(before, foot, reserved_panels(before, foot, g.panels) & ~released, g.panels)
         held = before[LEFT_HOLDS + foot]
         if held and released >> held - 1 & 1:
             before[LEFT_HOLDS + foot] = 0
         keepers[foot] = reserved_panels(before, foot, g.panels)
-    kept = steps & row >> tables.ROLL_TAPS & (keepers[0] | keepers[1])  # virtual taps of rolls that a foot keeps down
+    kept = steps & row >> packing.ROLL_TAPS & (keepers[0] | keepers[1])  # virtual taps of rolls that a foot keeps down
     brackets, m = switches[0], 0
     for attempt in range(3):
         if attempt == 1:  # overrides that break the rules have priority, even over holds

@@ -21,12 +21,12 @@ import numpy as np
 
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import StepKind
-from dancetutor_cli.feet.solver import store, tables
+from dancetutor_cli.feet.solver import packing, tables
 from dancetutor_cli.feet.solver.compiled import inner_kernel
 from dancetutor_cli.feet.solver.itg_costs import charge_time
 from dancetutor_cli.feet.solver.itg_moves import start_itg
 from dancetutor_cli.feet.solver.state import PLACE_BITS, name_neighbours
-from dancetutor_cli.feet.solver.store import find, number_of, number_of_layer, slot_of
+from dancetutor_cli.feet.solver.tables import find, number_of, number_of_layer, slot_of
 from dancetutor_cli.feet.solver.thesis_moves import start_thesis
 from dancetutor_cli.feet.solver.vocabulary import MOST_MS  # fmt: skip
 
@@ -37,7 +37,7 @@ _NEVER = np.int64(1 << 60)
 # The bits of each kind of step in the first column of a packed row: with all rolls as taps, and with taps of rolls
 # apart.
 _KINDS = np.array(
-    [[0, 1, 1, 1 << tables.HOLDS, 1, 1], [0, 1, 1, 1 << tables.HOLDS, 1, 1 << tables.ROLL_TAPS]], dtype=np.int64
+    [[0, 1, 1, 1 << packing.HOLDS, 1, 1], [0, 1, 1, 1 << packing.HOLDS, 1, 1 << packing.ROLL_TAPS]], dtype=np.int64
 )
 
 
@@ -50,8 +50,8 @@ def _pattern(row, more, patterns, numbers, counts):  # type: ignore[no-untyped-d
         if patterns[number, 0] == row and patterns[number, 1] == more:
             return number
         at = (at + 1) & (len(numbers) - 1)
-    number = counts[store.PATTERNS]
-    counts[store.PATTERNS] += 1
+    number = counts[tables.PATTERNS]
+    counts[tables.PATTERNS] += 1
     numbers[at] = number
     patterns[number, 0], patterns[number, 1] = row, more
     return number
@@ -91,7 +91,7 @@ def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
     patterns, numbers, counts = t.pattern, t.pattern_hash, t.counts
     pattern, ends = rows.pattern, rows.ends
     n, c = steps.shape
-    if counts[store.PATTERNS] + n > len(patterns) or 2 * (counts[store.PATTERNS] + n) > len(numbers):
+    if counts[tables.PATTERNS] + n > len(patterns) or 2 * (counts[tables.PATTERNS] + n) > len(numbers):
         return False
     kinds = _KINDS[1 if keep_rolls else 0]
     rolled, mined = keep_rolls and _any_from(steps, _ROLL), _any_from(mines, 1)
@@ -101,31 +101,31 @@ def _number_rows(rows, keep_rolls, t):  # type: ignore[no-untyped-def]
         ends[p] = -1
     held, last, latest = 0, np.int64(-1), np.int64(-1)
     for r in range(n):
-        row = np.int64(pattern[r]) << tables.ROLLS if rolled else np.int64(0)
+        row = np.int64(pattern[r]) << packing.ROLLS if rolled else np.int64(0)
         more = forced[r] if len(forced) else np.int64(0)
         if keep_rolls and latest >= last >= 0:
             for p in range(c):
                 if ends[p] == last:
-                    more |= np.int64(1) << p + tables.EARLIER
+                    more |= np.int64(1) << p + packing.EARLIER
         if held:
             for p in range(c):
                 if held >> p & 1 and ends[p] <= tick[r]:
-                    row |= 1 << p + tables.RELEASED
-                    if keep_rolls and tick[r] - ends[p] <= tables.FRESH_TICKS:
-                        row |= 1 << tables.FRESH
+                    row |= 1 << p + packing.RELEASED
+                    if keep_rolls and tick[r] - ends[p] <= packing.FRESH_TICKS:
+                        row |= 1 << packing.FRESH
                     held &= ~(1 << p)
         stepped = np.int64(0)
         for p in range(c):
             stepped |= kinds[steps[r, p]] << p
-        if stepped >> tables.HOLDS & (1 << tables.COLUMN_BITS) - 1:
+        if stepped >> packing.HOLDS & (1 << packing.COLUMN_BITS) - 1:
             for p in range(c):
-                if stepped >> tables.HOLDS + p & 1:
+                if stepped >> packing.HOLDS + p & 1:
                     ends[p] = hold_end[r, p]
                     latest = max(latest, ends[p])
                     held |= 1 << p
         if mined:
             for p in range(c):
-                row |= np.int64(mines[r, p]) << p + tables.MINES
+                row |= np.int64(mines[r, p]) << p + packing.MINES
         if stepped:
             last = tick[r]
         row |= stepped
@@ -150,9 +150,9 @@ def wait(rows):  # type: ignore[no-untyped-def]
 def _row_of_time(ms, t):  # type: ignore[no-untyped-def]
     """Return the row of `timed_cost` for `ms` milliseconds; a new time is entered. Returns -1 if there is no room."""
     row = np.int64(t.timed_row[ms])
-    if row < 0 and t.counts[store.TIMES] < len(t.timed_cost):
-        row = t.counts[store.TIMES]
-        t.counts[store.TIMES] += 1
+    if row < 0 and t.counts[tables.TIMES] < len(t.timed_cost):
+        row = t.counts[tables.TIMES]
+        t.counts[tables.TIMES] += 1
         t.timed_row[ms] = row
     return row
 
@@ -178,50 +178,50 @@ def advance(r, rows, t, nodes, rules, scratch):  # type: ignore[no-untyped-def]
     layer, edge, transition = t.layer, t.edge, t.transition
     keys, numbers, curves = t.transition_key, t.transition_hash, rules.curves
     timed_key, timed_cost = t.timed_key, t.timed_cost
-    here = np.int64(transition[chosen[r - 1], store.TO_LAYER]) if r else np.int64(store.START)
+    here = np.int64(transition[chosen[r - 1], tables.TO_LAYER]) if r else np.int64(tables.START)
     for row in range(r, len(pattern)):
         number = np.int64(chosen[row])
         if number < 0:
             number = find(here << 32 | pattern[row], keys, numbers)
             if number < 0:
-                return row, store.UNEXPLORED
+                return row, tables.UNEXPLORED
             chosen[row] = number
-        here = np.int64(transition[number, store.TO_LAYER])
-        low, high, ms = first[row, store.FIRST], first[row + 1, store.FIRST], elapsed[row]
-        top = high + layer[here, store.LAYER_SIZE]
+        here = np.int64(transition[number, tables.TO_LAYER])
+        low, high, ms = first[row, tables.FIRST], first[row + 1, tables.FIRST], elapsed[row]
+        top = high + layer[here, tables.LAYER_SIZE]
         if top > len(node):
-            return row, store.MORE_NODES
+            return row, tables.MORE_NODES
         time = _row_of_time(ms, t)
         if time < 0:
-            return row, store.MORE_TIMED
+            return row, tables.MORE_TIMED
         costs = timed_cost[time]
         u, best, cheapest = high, _NEVER, _NEVER
-        start = np.int64(transition[number, store.FIRST_EDGE])
-        for e in range(start, start + transition[number, store.EDGE_COUNT]):
+        start = np.int64(transition[number, tables.FIRST_EDGE])
+        for e in range(start, start + transition[number, tables.EDGE_COUNT]):
             packed = edge[e]
-            facts = packed >> store.FACTS_SHIFT & store.FACTS_MASK
+            facts = packed >> tables.FACTS_SHIFT & tables.FACTS_MASK
             price = costs[facts]
-            if price == store.UNKNOWN:
+            if price == tables.UNKNOWN:
                 price = _time_cost(facts, ms, timed_key, costs, curves, scratch)
             cost = (
-                (node[low + (packed & store.PLACE_MASK)] >> store.COST_SHIFT)
-                + (packed >> store.EDGE_COST_SHIFT)
+                (node[low + (packed & tables.PLACE_MASK)] >> tables.COST_SHIFT)
+                + (packed >> tables.EDGE_COST_SHIFT)
                 + price
                 - 1
             )
-            way = cost << store.COST_SHIFT | e
+            way = cost << tables.COST_SHIFT | e
             best = min(best, way)
             node[u] = best
             cheapest = min(cheapest, way)
-            last = packed >> store.LAST_BIT & 1
+            last = packed >> tables.LAST_BIT & 1
             u += last
             best = _NEVER if last else best
-        cheapest >>= store.COST_SHIFT
+        cheapest >>= tables.COST_SHIFT
         for u in range(high, top):
-            node[u] -= cheapest << store.COST_SHIFT
-        first[row + 2, store.FIRST] = top
-        first[row + 1, store.BASE] = first[row, store.BASE] + cheapest
-    return len(pattern), store.DONE
+            node[u] -= cheapest << tables.COST_SHIFT
+        first[row + 2, tables.FIRST] = top
+        first[row + 1, tables.BASE] = first[row, tables.BASE] + cheapest
+    return len(pattern), tables.DONE
 
 
 @inner_kernel(inline="always")
@@ -230,18 +230,18 @@ def trace(t, nodes, found):  # type: ignore[no-untyped-def]
     first, node, edge, wide = nodes.row, nodes.node, t.edge, t.wide
     limb, part, path = found.limb, found.part, found.move
     n, c = limb.shape
-    at = first[n, store.FIRST]
-    while node[at] >> store.COST_SHIFT:
+    at = first[n, tables.FIRST]
+    while node[at] >> tables.COST_SHIFT:
         at += 1
     for r in range(n - 1, -1, -1):
-        e = node[at] & store.EDGE_MASK
-        at = first[r, store.FIRST] + (edge[e] & store.PLACE_MASK)
+        e = node[at] & tables.EDGE_MASK
+        at = first[r, tables.FIRST] + (edge[e] & tables.PLACE_MASK)
         path[r] = t.edge_move[e]
-        action = wide[path[r], store.WIDE_ACTION]
+        action = wide[path[r], tables.WIDE_ACTION]
         for p in range(c):
             code = action >> 3 * p & 7
-            limb[r, p] = _LEFT_OVER if code == tables.UNPLAYED_CODE else code - 1
-            part[r, p] = action >> store.PART_SHIFT + 2 * p & 3
+            limb[r, p] = _LEFT_OVER if code == packing.UNPLAYED_CODE else code - 1
+            part[r, p] = action >> tables.PART_SHIFT + 2 * p & 3
 
 
 @inner_kernel(inline="always")
@@ -252,13 +252,13 @@ def explain_path(t, rows, rules, found):  # type: ignore[no-untyped-def]
     panels, angle = rules.geometry.panels, rules.geometry.angle
     for r in range(len(path)):
         move = path[r]
-        number = wide[move, store.WIDE_EVENTS] >> store.TERMS_SHIFT
-        events[r] = wide[move, store.WIDE_EVENTS] & store.EVENT_BITS
+        number = wide[move, tables.WIDE_EVENTS] >> tables.TERMS_SHIFT
+        events[r] = wide[move, tables.WIDE_EVENTS] & tables.EVENT_BITS
         for term in range(cost.shape[1]):
             cost[r, term] = terms[number, term] if term < terms.shape[1] else 0
-        if moves[move, store.FACTS]:
-            charge_time(timed_key[moves[move, store.FACTS]], elapsed[r], rules.curves, cost[r])
-        key = keys[moves[move, store.NEXT]]
+        if moves[move, tables.FACTS]:
+            charge_time(timed_key[moves[move, tables.FACTS]], elapsed[r], rules.curves, cost[r])
+        key = keys[moves[move, tables.NEXT]]
         left, right = key & _PLACE, key >> PLACE_BITS & _PLACE
         feet[r, 0], feet[r, 1] = panels[left, 0, 0], panels[right, 1, 0]
         # the dancer reached this facing by turning right
@@ -279,53 +279,53 @@ def margins(rows, t, nodes, found):  # type: ignore[no-untyped-def]
     timed_cost, wide, path = t.timed_cost, t.wide, found.move
     margin, ambiguity = found.margin, found.ambiguity
     n = len(path)
-    least, end = first[n, store.BASE], first[n + 1, store.FIRST]
+    least, end = first[n, tables.BASE], first[n + 1, tables.FIRST]
     widest = np.int64(0)
     for r in range(n + 1):
-        widest = max(widest, first[r + 1, store.FIRST] - first[r, store.FIRST])
+        widest = max(widest, first[r + 1, tables.FIRST] - first[r, tables.FIRST])
     if end + 4 * widest > len(node):
-        return store.MORE_NODES
+        return tables.MORE_NODES
     after, before = node[end : end + widest], node[end + widest :]
     same_after, same_before = node[end + 2 * widest :], node[end + 3 * widest :]  # with the same limbs
     for v in range(widest):
         after[v] = same_after[v] = 0
     for r in range(n - 1, -1, -1):
-        low, base, time = first[r, store.FIRST], first[r, store.BASE], t.timed_row[elapsed[r]]
-        ours, other, resolved = wide[path[r], store.WIDE_ACTION] & store.LIMB_CODES, _NEVER, _NEVER
-        for v in range(first[r + 1, store.FIRST] - low):
+        low, base, time = first[r, tables.FIRST], first[r, tables.BASE], t.timed_row[elapsed[r]]
+        ours, other, resolved = wide[path[r], tables.WIDE_ACTION] & tables.LIMB_CODES, _NEVER, _NEVER
+        for v in range(first[r + 1, tables.FIRST] - low):
             before[v] = same_before[v] = _NEVER
-        start = np.int64(transition[chosen[r], store.FIRST_EDGE])
+        start = np.int64(transition[chosen[r], tables.FIRST_EDGE])
         u = 0
-        for e in range(start, start + transition[chosen[r], store.EDGE_COUNT]):
+        for e in range(start, start + transition[chosen[r], tables.EDGE_COUNT]):
             packed = edge[e]
-            v, price = packed & store.PLACE_MASK, (packed >> store.EDGE_COST_SHIFT) - 1
-            price += timed_cost[time, packed >> store.FACTS_SHIFT & store.FACTS_MASK]
+            v, price = packed & tables.PLACE_MASK, (packed >> tables.EDGE_COST_SHIFT) - 1
+            price += timed_cost[time, packed >> tables.FACTS_SHIFT & tables.FACTS_MASK]
             rest, same_rest = price + after[u], price + same_after[u]
             before[v] = min(before[v], rest)
             if edge_limbs[e] == ours:
                 same_before[v] = min(same_before[v], same_rest)
             else:
-                reached = base + (node[low + v] >> store.COST_SHIFT)
+                reached = base + (node[low + v] >> tables.COST_SHIFT)
                 other, resolved = min(other, reached + rest), min(resolved, reached + same_rest)
-            u += packed >> store.LAST_BIT & 1
+            u += packed >> tables.LAST_BIT & 1
         margin[r] = other - least if other < _NEVER else -1
         ambiguity[r] = 0 if other != least else 1 if resolved == least else 2
         after, before, same_after, same_before = before, after, same_before, same_after
-    return store.DONE
+    return tables.DONE
 
 
 @inner_kernel
 def begin(rows, t, nodes, rules):  # type: ignore[no-untyped-def]
     """Prepare rows for the dynamic programme; return False if the tables do not have room for the patterns."""
-    if t.counts[store.MOVES] == 0:  # move 0, state 0 and layer 0 are the start of every play
+    if t.counts[tables.MOVES] == 0:  # move 0, state 0 and layer 0 are the start of every play
         key = start_thesis(rules.geometry) if rules.model == 0 else start_itg(rules.home)
-        t.move[0, store.NEXT] = number_of(key, t.state_key, t.state_hash, t.counts, store.STATES)
-        nodes.node[0] = store.START
+        t.move[0, tables.NEXT] = number_of(key, t.state_key, t.state_hash, t.counts, tables.STATES)
+        nodes.node[0] = tables.START
         number_of_layer(nodes.node, 1, t)
-        t.counts[store.MOVES] = t.counts[store.FACTS_KNOWN] = 1  # facts 0 are the empty facts
+        t.counts[tables.MOVES] = t.counts[tables.FACTS_KNOWN] = 1  # facts 0 are the empty facts
     if not _number_rows(rows, rules.model > 0, t):
         return False
     wait(rows)
-    nodes.row[0, store.FIRST], nodes.row[1, store.FIRST], nodes.row[0, store.BASE] = 0, 1, 0
+    nodes.row[0, tables.FIRST], nodes.row[1, tables.FIRST], nodes.row[0, tables.BASE] = 0, 1, 0
     nodes.node[0] = 0
     return True

@@ -14,7 +14,7 @@ from dancetutor_cli.feet.pads import Pad, load_pad
 from dancetutor_cli.feet.play import Play, Rows, StepKind, prepare
 from dancetutor_cli.feet.preset import Curve, Preset
 from dancetutor_cli.feet.solver.engine import Engine, engine_for, whole_curve
-from dancetutor_cli.feet.solver.store import SolverPath
+from dancetutor_cli.feet.solver.tables import SolverPath
 from dancetutor_cli.feet.solver.techniques import EventNames
 
 
@@ -63,7 +63,7 @@ def forced_limbs(rows: Rows, overrides: Overrides | None) -> NDArray[np.int64] |
 
 
 def play_of(rows: Rows, engine: Engine, found: SolverPath) -> Play:
-    """Make the play of a way through the rows; the way must have its details."""
+    """Return the play of a way through the rows; the way must have its details."""
     return Play(
         rows=rows,
         limb=found.limb,

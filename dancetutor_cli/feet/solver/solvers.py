@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from dancetutor_cli.feet.solver import store, tables
+from dancetutor_cli.feet.solver import packing, tables
 from dancetutor_cli.feet.solver.compiled import inner_kernel, kernel
 from dancetutor_cli.feet.solver.itg_moves import expand_itg
 from dancetutor_cli.feet.solver.kernel import advance, begin, explain_path, margins, trace, wait
 from dancetutor_cli.feet.solver.state import PLACE_BITS
-from dancetutor_cli.feet.solver.store import find, number_of, number_of_layer, number_of_terms, slot_of_pair
+from dancetutor_cli.feet.solver.tables import find, number_of, number_of_layer, number_of_terms, slot_of_pair
 from dancetutor_cli.feet.solver.thesis_moves import expand_thesis
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 
@@ -30,20 +30,22 @@ def _keep(count, out, t):  # type: ignore[no-untyped-def]
     counts, moves, wide, facts = t.counts, t.move, t.wide, t.timed_key
     keys, numbers, terms, terms_hash = t.state_key, t.state_hash, t.terms, t.terms_hash
     given, given_terms = out.wide, out.terms
-    first = counts[store.MOVES]
+    first = counts[tables.MOVES]
     for i in range(count):
         move = first + i
-        moves[move, store.NEXT] = number_of(given[i, tables.MOVE_KEY], keys, numbers, counts, store.STATES)
-        timed = given[i, tables.MOVE_TIMED]
-        moves[move, store.FACTS] = number_of(timed, facts, t.timed_hash, counts, store.FACTS_KNOWN) if timed else 0
-        wide[move, store.WIDE_ACTION] = given[i, tables.MOVE_ACTION] | given[i, tables.MOVE_PART] << store.PART_SHIFT
+        moves[move, tables.NEXT] = number_of(given[i, packing.MOVE_KEY], keys, numbers, counts, tables.STATES)
+        timed = given[i, packing.MOVE_TIMED]
+        moves[move, tables.FACTS] = number_of(timed, facts, t.timed_hash, counts, tables.FACTS_KNOWN) if timed else 0
+        wide[move, tables.WIDE_ACTION] = (
+            given[i, packing.MOVE_ACTION] | given[i, packing.MOVE_PART] << tables.PART_SHIFT
+        )
         number = number_of_terms(given_terms[i], terms, terms_hash, counts)
-        wide[move, store.WIDE_EVENTS] = given[i, tables.MOVE_EVENTS] | number << store.TERMS_SHIFT
+        wide[move, tables.WIDE_EVENTS] = given[i, packing.MOVE_EVENTS] | number << tables.TERMS_SHIFT
         cost = 0
         for term in range(given_terms.shape[1]):
             cost += given_terms[i, term]
-        moves[move, store.COST], moves[move, store.MOVE_LIMBS] = cost, given[i, tables.MOVE_ACTION]
-    counts[store.MOVES] += count
+        moves[move, tables.COST], moves[move, tables.MOVE_LIMBS] = cost, given[i, packing.MOVE_ACTION]
+    counts[tables.MOVES] += count
     return first << 16 | count
 
 
@@ -51,17 +53,17 @@ def _keep(count, out, t):  # type: ignore[no-untyped-def]
 def _room(t):  # type: ignore[no-untyped-def]
     """Return which table has no room for the moves of one more pair, or DONE."""
     counts = t.counts
-    if counts[store.STATES] + tables.MOST_MOVES > len(t.state_key):
-        return store.MORE_STATES
-    if counts[store.MOVES] + tables.MOST_MOVES > len(t.move):
-        return store.MORE_MOVES
-    if 2 * counts[store.PAIRS] >= len(t.pair):
-        return store.MORE_PAIRS
-    if counts[store.FACTS_KNOWN] + tables.MOST_MOVES > len(t.timed_key):
-        return store.MORE_FACTS
-    if counts[store.TERMS_KNOWN] + tables.MOST_MOVES > len(t.terms):
-        return store.MORE_TERMS
-    return store.DONE
+    if counts[tables.STATES] + packing.MOST_MOVES > len(t.state_key):
+        return tables.MORE_STATES
+    if counts[tables.MOVES] + packing.MOST_MOVES > len(t.move):
+        return tables.MORE_MOVES
+    if 2 * counts[tables.PAIRS] >= len(t.pair):
+        return tables.MORE_PAIRS
+    if counts[tables.FACTS_KNOWN] + packing.MOST_MOVES > len(t.timed_key):
+        return tables.MORE_FACTS
+    if counts[tables.TERMS_KNOWN] + packing.MOST_MOVES > len(t.terms):
+        return tables.MORE_TERMS
+    return tables.DONE
 
 
 @inner_kernel
@@ -101,48 +103,48 @@ def _connect(key, total, found, out, t):  # type: ignore[no-untyped-def]
     """
     counts, moves, edge, transition, met = t.counts, t.move, t.edge, t.transition, t.met
     edge_move, edge_limbs, packed, reached = t.edge_move, t.edge_limbs, out.packed, out.reached
-    size = t.layer[key >> 32, store.LAYER_SIZE]
-    if counts[store.EDGES] + total > len(edge):
-        return store.MORE_EDGES
-    if counts[store.TRANSITIONS] >= len(transition):
-        return store.MORE_TRANSITIONS
-    if counts[store.LAYERS] >= len(t.layer):
-        return store.MORE_LAYERS
-    if counts[store.LAYER_STATES] + found > len(t.layer_state):
-        return store.MORE_LAYER_STATES
+    size = t.layer[key >> 32, tables.LAYER_SIZE]
+    if counts[tables.EDGES] + total > len(edge):
+        return tables.MORE_EDGES
+    if counts[tables.TRANSITIONS] >= len(transition):
+        return tables.MORE_TRANSITIONS
+    if counts[tables.LAYERS] >= len(t.layer):
+        return tables.MORE_LAYERS
+    if counts[tables.LAYER_STATES] + found > len(t.layer_state):
+        return tables.MORE_LAYER_STATES
     _sort(reached, found)
     for i in range(found):
         reached[i] &= (1 << _RANK_SHIFT) - 1
-        met[reached[i], store.MET_PLACE] = i
-    number = counts[store.TRANSITIONS]
-    transition[number, store.TO_LAYER] = number_of_layer(reached, found, t)
-    transition[number, store.FIRST_EDGE], transition[number, store.EDGE_COUNT] = counts[store.EDGES], total
+        met[reached[i], tables.MET_PLACE] = i
+    number = counts[tables.TRANSITIONS]
+    transition[number, tables.TO_LAYER] = number_of_layer(reached, found, t)
+    transition[number, tables.FIRST_EDGE], transition[number, tables.EDGE_COUNT] = counts[tables.EDGES], total
     for u in range(found):
         reached[u] = 0
     for i in range(size):
         for move in range(packed[i] >> 16, (packed[i] >> 16) + (packed[i] & 0xFFFF)):
-            reached[met[moves[move, store.NEXT], store.MET_PLACE]] += 1
-    e = counts[store.EDGES]
+            reached[met[moves[move, tables.NEXT], tables.MET_PLACE]] += 1
+    e = counts[tables.EDGES]
     for u in range(found):
         reached[u], e = e, e + reached[u]
     for i in range(size):
         for move in range(packed[i] >> 16, (packed[i] >> 16) + (packed[i] & 0xFFFF)):
-            u = met[moves[move, store.NEXT], store.MET_PLACE]
+            u = met[moves[move, tables.NEXT], tables.MET_PLACE]
             at = reached[u]
             reached[u] = at + 1
             edge[at] = (
                 i
-                | np.int64(moves[move, store.FACTS]) << store.FACTS_SHIFT
-                | np.int64(moves[move, store.COST]) << store.EDGE_COST_SHIFT
+                | np.int64(moves[move, tables.FACTS]) << tables.FACTS_SHIFT
+                | np.int64(moves[move, tables.COST]) << tables.EDGE_COST_SHIFT
             )
-            edge_move[at], edge_limbs[at] = move, moves[move, store.MOVE_LIMBS]
+            edge_move[at], edge_limbs[at] = move, moves[move, tables.MOVE_LIMBS]
     for u in range(found):
-        edge[reached[u] - 1] |= 1 << store.LAST_BIT
+        edge[reached[u] - 1] |= 1 << tables.LAST_BIT
     t.transition_key[number] = key
     t.transition_hash[~find(key, t.transition_key, t.transition_hash)] = number
-    counts[store.EDGES] = e
-    counts[store.TRANSITIONS] += 1
-    return store.DONE
+    counts[tables.EDGES] = e
+    counts[tables.TRANSITIONS] += 1
+    return tables.DONE
 
 
 expand: Any = None  # each explorer has its own global of this name; see `explorer`
@@ -158,51 +160,51 @@ def explorer(rules: Any) -> Any:
         """
         counts, pairs, keys, met, moves, states = t.counts, t.pair, t.state_key, t.met, t.move, t.layer_state
         packed, reached = out.packed, out.reached
-        layer = np.int64(t.transition[chosen[row - 1], store.TO_LAYER]) if row else np.int64(store.START)
+        layer = np.int64(t.transition[chosen[row - 1], tables.TO_LAYER]) if row else np.int64(tables.START)
         for r in range(row, len(pattern)):
             number = find(layer << 32 | pattern[r], t.transition_key, t.transition_hash)
             if number >= 0:
                 chosen[r] = number
-                layer = np.int64(t.transition[number, store.TO_LAYER])
+                layer = np.int64(t.transition[number, tables.TO_LAYER])
                 continue
-            counts[store.TRIED] += 1
-            tried = counts[store.TRIED]
-            first, size, known = t.layer[layer, store.LAYER_FIRST], t.layer[layer, store.LAYER_SIZE], True
+            counts[tables.TRIED] += 1
+            tried = counts[tables.TRIED]
+            first, size, known = t.layer[layer, tables.LAYER_FIRST], t.layer[layer, tables.LAYER_SIZE], True
             if size > len(packed):
-                return store.MORE_SCRATCH
+                return tables.MORE_SCRATCH
             for i in range(size):  # a short loop, so that the processor waits for many states' pairs at once
                 packed[i] = pairs[slot_of_pair(np.int64(pattern[r]) << 32 | states[first + i], pairs), 1]
-                known &= packed[i] != store.UNEXPANDED
+                known &= packed[i] != tables.UNEXPANDED
             for i in range(0 if known else size):
-                if packed[i] != store.UNEXPANDED:
+                if packed[i] != tables.UNEXPANDED:
                     continue
                 wanted = _room(t)
-                if wanted != store.DONE:
+                if wanted != tables.DONE:
                     return wanted
                 key = np.int64(pattern[r]) << 32 | states[first + i]
                 at = slot_of_pair(key, pairs)
                 word, more = t.pattern[pattern[r], 0], t.pattern[pattern[r], 1]
                 pairs[at, 0] = key
                 pairs[at, 1] = packed[i] = _keep(expand(keys[states[first + i]], word, more, rules, out), out, t)
-                counts[store.PAIRS] += 1
+                counts[tables.PAIRS] += 1
             total = found = np.int64(0)
             for i in range(size):
                 total += packed[i] & 0xFFFF
             if total > len(reached):
-                return store.MORE_SCRATCH
+                return tables.MORE_SCRATCH
             for i in range(size):
                 for move in range(packed[i] >> 16, (packed[i] >> 16) + (packed[i] & 0xFFFF)):
-                    state = np.int64(moves[move, store.NEXT])
-                    if met[state, store.MET_IN] != tried:
-                        met[state, store.MET_IN] = tried
+                    state = np.int64(moves[move, tables.NEXT])
+                    if met[state, tables.MET_IN] != tried:
+                        met[state, tables.MET_IN] = tried
                         reached[found] = _rank(keys[state]) | state
                         found += 1
             wanted = _connect(layer << 32 | pattern[r], total, found, out, t)
-            if wanted != store.DONE:
+            if wanted != tables.DONE:
                 return wanted
-            chosen[r] = counts[store.TRANSITIONS] - 1
-            layer = np.int64(t.transition[chosen[r], store.TO_LAYER])
-        return store.DONE
+            chosen[r] = counts[tables.TRANSITIONS] - 1
+            layer = np.int64(t.transition[chosen[r], tables.TO_LAYER])
+        return tables.DONE
 
     return inner_kernel(FunctionType(explore.__code__, {**globals(), "expand": rules}, "explore"))
 
@@ -220,17 +222,17 @@ def _way_finder(rules_of_model: Any) -> Any:
         """Continue from `start_row` to the last row. Returns the row reached, and which table has no room, or DONE."""
         rules, out = making.rules, making.moves
         if start_row == 0 and not begin(rows, t, nodes, rules):
-            return start_row, store.MORE_PATTERNS
-        row, wanted = start_row, store.UNEXPLORED
-        while wanted == store.UNEXPLORED:
-            if t.counts[store.FACTS_KNOWN] > t.timed_cost.shape[1]:
-                return row, store.MORE_TIMED
+            return start_row, tables.MORE_PATTERNS
+        row, wanted = start_row, tables.UNEXPLORED
+        while wanted == tables.UNEXPLORED:
+            if t.counts[tables.FACTS_KNOWN] > t.timed_cost.shape[1]:
+                return row, tables.MORE_TIMED
             row, wanted = advance(row, rows, t, nodes, rules, found.cost[len(found.cost) - 1])
-            if wanted == store.UNEXPLORED:
+            if wanted == tables.UNEXPLORED:
                 lacking = explore(row, rows.pattern, nodes.transition, t, rules, out)
-                if lacking != store.DONE:
+                if lacking != tables.DONE:
                     return row, lacking
-        if wanted == store.DONE:
+        if wanted == tables.DONE:
             trace(t, nodes, found)
         return row, wanted
 
@@ -240,14 +242,14 @@ def _way_finder(rules_of_model: Any) -> Any:
 @inner_kernel
 def _exchange(rows, edit):  # type: ignore[no-untyped-def]
     """Exchange the contents of a cell and of its edit."""
-    r, p = edit[store.EDIT_ROW], edit[store.EDIT_COLUMN]
+    r, p = edit[tables.EDIT_ROW], edit[tables.EDIT_COLUMN]
     step, end, mine = rows.steps[r, p], rows.hold_end[r, p], rows.mines[r, p]
     rows.steps[r, p], rows.hold_end[r, p], rows.mines[r, p] = (
-        edit[store.EDIT_STEP],
-        edit[store.EDIT_END],
-        edit[store.EDIT_MINE] != 0,
+        edit[tables.EDIT_STEP],
+        edit[tables.EDIT_END],
+        edit[tables.EDIT_MINE] != 0,
     )
-    edit[store.EDIT_STEP], edit[store.EDIT_END], edit[store.EDIT_MINE] = step, end, mine
+    edit[tables.EDIT_STEP], edit[tables.EDIT_END], edit[tables.EDIT_MINE] = step, end, mine
 
 
 def _solver(name: str, rules_of_model: Any) -> Any:
@@ -270,20 +272,23 @@ def _solver(name: str, rules_of_model: Any) -> Any:
                 _exchange(rows, edit)
                 _, wanted = find_way(rows, np.int64(0), t, nodes, making, found)
                 _exchange(rows, edit)
-                if wanted != store.DONE or not t.wide[found.move[edit[store.EDIT_OF]], store.WIDE_EVENTS] & DOUBLESTEP:
+                if (
+                    wanted != tables.DONE
+                    or not t.wide[found.move[edit[tables.EDIT_OF]], tables.WIDE_EVENTS] & DOUBLESTEP
+                ):
                     return number, wanted
-            return len(found.edit), store.DONE
+            return len(found.edit), tables.DONE
         if start == EXPLAIN:
             wait(rows)
         else:
             row, wanted = find_way(rows, start, t, nodes, making, found)
-            if wanted == store.DONE and len(found.margin):
+            if wanted == tables.DONE and len(found.margin):
                 wanted = margins(rows, t, nodes, found)
-            if wanted != store.DONE:
+            if wanted != tables.DONE:
                 return row, wanted
         if len(found.events):
             explain_path(t, rows, making.rules, found)
-        return start, store.DONE
+        return start, tables.DONE
 
     own = FunctionType(solve.__code__, {**globals(), "find_way": _way_finder(rules_of_model)}, name)
     own.__qualname__ = name

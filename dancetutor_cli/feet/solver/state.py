@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dancetutor_cli.feet.solver.compiled import inner_kernel
-from dancetutor_cli.feet.solver.tables import (
+from dancetutor_cli.feet.solver.packing import (
     DRILL_LENGTH,
     DRILL_SECONDS,
     DRILL_TICKS,
@@ -19,7 +19,7 @@ from dancetutor_cli.feet.solver.tables import (
 )
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 
-LEFT_AT, RIGHT_AT = 0, 1  # places of the feet, see `tables.Geometry`
+LEFT_AT, RIGHT_AT = 0, 1  # places of the feet, see `packing.Geometry`
 SIDE = 2  # how a facing of 180 degrees was reached: 1 as +180, 2 as -180; 0 for other facings
 LAST = 3  # last leg: 0 none, 1 left, 2 right
 LEFT_HELD, RIGHT_HELD = 4, 5  # parts of a foot that a hold reserves: bit 0 the heel or the whole foot, bit 1 the toe

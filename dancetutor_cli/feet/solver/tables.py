@@ -1,185 +1,379 @@
-"""The arrays that the solver's kernels share: a pad's geometry, and the ways to play one row from one state.
-
-The arrays are few and wide, with names for their columns, because numba's time to compile grows with every array
-passed.
-"""
+"""The solver's tables of the states, row patterns, moves, layers and nodes found so far, by number. Kernel code."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dancetutor_cli.feet.pads import HOME_WIDTH, Pad
-from dancetutor_cli.run.errors import UsageError
+from dancetutor_cli.feet.solver.compiled import inner_kernel, kernel
+from dancetutor_cli.feet.solver.packing import MOST_MOVES
+from dancetutor_cli.feet.solver.vocabulary import MOST_MS as MOST_MS
 
-# Bits of the two words of a packed row, `Tables.pattern`, from the lowest one at the right. A mask has one bit for each
-# column, at most ten:
-#
-#     row    60 FRESH | 50 ROLL_TAPS | 40 ROLLS | 30 RELEASED | 20 MINES | 10 HOLDS | 0 TAPS
-#     more                           | 30 EARLIER |               0 FORCED: 3 bits for each column
-#
-#     TAPS, HOLDS, MINES   what stands in the row's cells; with rolls as taps, ROLLS and ROLL_TAPS are empty
-#     RELEASED, FRESH      columns whose hold has ended since the row before; whether that was just now
-#     ROLLS, ROLL_TAPS     columns whose roll goes on after the row; virtual taps of rolls
-#     FORCED, EARLIER      limb codes of overrides; columns whose hold ended at the last row with steps
-#
-# A limb code is 0 for nobody, a `Limb` + 1, or UNPLAYED_CODE. `state` has the bits of a state. Other words, in `store`:
-#
-#     edge           35 cost without time | 19 number of facts | 18 last one that leads there | 0 place of state before
-#     node           32 cost so far | 0 edge that led here
-#     wide           WIDE_ACTION: 32 parts, 2 bits for each column | 0 limb codes, 3 bits for each column
-#                    WIDE_EVENTS: 32 number of the costs by term | 0 events
-#     pair           32 pattern | 0 state; beside it 16 first move | 0 number of moves
+# A layer is all states that a row can end in. It depends only on the layer before and on the row's pattern, so charts
+# share layers. They also share the transitions between layers, which have one edge for each state and move.
 
-MOST_PLACES = 32  # places of a foot: panels, home, pairs of neighbours
-EPSILON = 1e-6  # every comparison of docs/cost-model.md: degrees, panel widths, seconds
-MOST_MOVES = 10 * 9 * 8 * 7 + 8  # ways to put four limbs on a row of ten steps, and some spare room
-COLUMN_BITS = 10  # bits of each mask of a packed row
-TAPS, HOLDS, MINES, RELEASED, ROLLS, ROLL_TAPS = (i * COLUMN_BITS for i in range(6))  # where the masks start
-FRESH = 6 * COLUMN_BITS  # bit of a row whose holds have just been released
-# first bits in the second word: limb codes of overrides, and holds that ended at the last row with steps
-FORCED, EARLIER = 0, 3 * COLUMN_BITS
-UNPLAYED_CODE = 5  # the limb code of a step for which no limb is free
-FRESH_TICKS = 6  # a 32nd; a hold that ended at most this long ago has just been released
-DISTANCE_UNIT = 20  # distances are whole numbers of 1/20 panel widths
-
-# columns of `Moves.wide`: packed state after the row; limb codes, 3 bits for each column; `Part`, 2 bits for each
-# column; packed facts, whose costs depend on the time since the row before, 0: no facts; bits of `vocabulary.EVENTS`
-MOVE_KEY, MOVE_ACTION, MOVE_PART, MOVE_TIMED, MOVE_EVENTS = range(5)
-UP, DOWN, LEFT, RIGHT, MIDDLE = range(5)
-# places in `Rules.limits`, the limits of time and length of moves
+# places in `counts`; the bits of packed words are drawn in `packing`
 (
-    GALLOP_TICKS, GALLOP_SECONDS, GALLOP_NEIGHBOURS, STREAM_TICKS, STREAM_SECONDS, STREAM_LENGTH, DRILL_TICKS,
-    DRILL_SECONDS, DRILL_LENGTH,
-) = range(9)  # fmt: skip
+    STATES, PATTERNS, MOVES, PAIRS, FACTS_KNOWN, TERMS_KNOWN, LAYERS, LAYER_STATES, TRANSITIONS, EDGES, TRIED,
+    TIMES,
+) = range(12)  # fmt: skip
+NEXT, COST, FACTS, MOVE_LIMBS = range(4)  # columns of `Tables.move`
+WIDE_ACTION, WIDE_EVENTS = range(2)  # columns of `Tables.wide`
+LAYER_FIRST, LAYER_SIZE = range(2)  # columns of `Tables.layer`
+TO_LAYER, FIRST_EDGE, EDGE_COUNT = range(3)  # columns of `Tables.transition`
+MET_IN, MET_PLACE = range(2)  # columns of `Tables.met`
+# Bits of `Tables.edge`, from the lowest: the place of the edge's state in the layer before; whether it is the last edge
+# to its state in the layer after; the number of its facts; its cost without time.
+PLACE_MASK = (1 << 18) - 1
+LAST_BIT, FACTS_SHIFT, EDGE_COST_SHIFT = 18, 19, 35
+FACTS_MASK = (1 << EDGE_COST_SHIFT - FACTS_SHIFT) - 1
+COST_SHIFT = 32  # in `RowStates.node`: the edge is below, the cost from this bit on, so the least node is the cheapest
+EDGE_MASK = (1 << COST_SHIFT) - 1
+FIRST, BASE = range(2)  # columns of `RowStates.row`
+# columns of `SolverPath.edit`: a cell, its new contents, and the row that is checked for a doublestep
+EDIT_ROW, EDIT_COLUMN, EDIT_STEP, EDIT_END, EDIT_MINE, EDIT_OF = range(6)
+START = 0  # number of the layer and the state before the first row
+# what a kernel needs before it can continue
+(
+    DONE, MORE_STATES, MORE_PATTERNS, MORE_MOVES, MORE_PAIRS, MORE_NODES, MORE_FACTS, MORE_TERMS, MORE_TIMED,
+    MORE_LAYERS, MORE_LAYER_STATES, MORE_TRANSITIONS, MORE_EDGES, MORE_SCRATCH, UNEXPLORED,
+) = range(15)  # fmt: skip
+UNEXPANDED = -1  # empty slots of `Tables.pair`
+UNKNOWN = 0  # in `Tables.timed_cost`; zero, so that unused memory is never touched
+PART_SHIFT = 32  # in `WIDE_ACTION`: 3 bits for each column below, 2 bits for each column from here on
+LIMB_CODES = (1 << PART_SHIFT) - 1
+TERMS_SHIFT = 32  # in `WIDE_EVENTS`: bits of events below, number of the costs by term from here on
+EVENT_BITS = (1 << TERMS_SHIFT) - 1
+_FIRST_FACTOR, _NEXT_FACTOR = 1000003, 2097593  # factors that mix the costs by term into one number
+GOLDEN = 0x9E3779B97F4A7C15  # a multiplier that spreads numbers over a hash table
 
 
-class Geometry(NamedTuple):
-    """A pad with c panels. The places of a foot are 0 to c - 1: one panel; c: home; above c: two neighbouring panels.
+class Tables(NamedTuple):
+    """All states, row patterns and moves found so far with one pad and preset; charts share them.
 
-    left, right : float64 (p, 2), middle of a foot on each place; home differs for the two feet
-    angle : float64 (p, p), degrees in (-180, 180] of the vector from left foot to right foot; 0 if they are together
-    distance : int64 (p, p), between the middles of places, 1/20 panel widths
-    place : int64 (c, c), place of a foot on two panels, -1 if they are not neighbours; the diagonal has the places on
-    one panel
-    panels : int64 (p, 2, 2), by place and foot: heel and toe; the toe is -1 on one panel
-    mask : int64 (p,), the panels of a place as bits; near : int64 (p,), these panels and their neighbours as bits
-    arrow : int64 (c,), direction of a panel's arrow: `UP`, `DOWN`, `LEFT`, `RIGHT`, `MIDDLE`; diagonals are up or down
-    middle : the panel in the middle of the pad, -1 if there is none
+    counts : int64, used length of each table, and the number of transitions tried
+    state_key : int64; state_hash : int32, number of the state or -1; lengths of hash tables are powers of two
+    met : int32 (, 2), by state, scratch: number of the last tried transition that led to it; its place in that
+    transition's layer
+    pattern : int64 (, 2), packed row and overrides; pattern_hash : int32
+    pair : int64 (, 2), pattern << 32 | state or -1, and first move << 16 | number of moves
+    move : int32 (, 4), next state, cost without time, number of its facts about time, limb codes
+    wide : int64 (, 2), limb codes with parts above `PART_SHIFT`; events with a number of `terms` above `TERMS_SHIFT`
+    terms : int32 (, w), cost by weight, which many moves share; terms_hash : int32
+    timed_key : int64, packed facts; timed_hash : int32
+    timed_cost : int32 (, ), 1 + cost of facts by number, UNKNOWN if not computed yet; one row for each time found so
+    far
+    timed_row : int32 (MOST_MS + 1,), row of `timed_cost` by milliseconds, or -1
+    layer : int32 (, 2), first place of its states in `layer_state`, and their number; in the order of `explore`
+    layer_key : int64, hash of the states; layer_hash : int32
+    transition : int32 (, 3), next layer, first edge, number of edges
+    transition_key : int64, layer << 32 | pattern; transition_hash : int32
+    edge : int64, from where, facts and cost, see `PLACE_MASK`; edges are in the order of the states that they lead to,
+        those to one state in the order of those they come from; edge_move : int32, its move; edge_limbs : int32, limb
+        codes of its move
     """
 
-    left: NDArray[np.float64]
-    right: NDArray[np.float64]
-    angle: NDArray[np.float64]
-    distance: NDArray[np.int64]
-    place: NDArray[np.int64]
-    panels: NDArray[np.int64]
-    mask: NDArray[np.int64]
-    near: NDArray[np.int64]
-    arrow: NDArray[np.int64]
-    middle: int
-
-
-class Rules(NamedTuple):
-    """The rules and costs of a model (its index in `vocabulary.MODELS`), a pad and a preset; see `vocabulary` for
-    names.
-
-    weights : int64 (w,); switches : bool (s,); curves : int64 (c, MOST_MS + 1), by milliseconds since the row before
-    home : int64 (2,), the panels on which left and right foot start
-    limits : float64, see `GALLOP_TICKS`; long : bool (c, c), see `techniques.long_ways`
-    """
-
-    model: int
-    geometry: Geometry
-    weights: NDArray[np.int64]
-    switches: NDArray[np.bool_]
-    curves: NDArray[np.int64]
-    home: NDArray[np.int64]
-    limits: NDArray[np.float64]
-    long: NDArray[np.bool_]
-
-
-class Moves(NamedTuple):
-    """Every way to play one row from one state: room for `MOST_MOVES`.
-
-    wide : int64 (, 5), see above; terms : int32 (, w), cost of each weight, without time
-    scratch : int64 (8, 32); packed : int64, by state of a layer; reached : int64, by move of a layer, both scratch
-    """
-
+    counts: NDArray[np.int64]
+    state_key: NDArray[np.int64]
+    state_hash: NDArray[np.int32]
+    met: NDArray[np.int32]
+    pattern: NDArray[np.int64]
+    pattern_hash: NDArray[np.int32]
+    pair: NDArray[np.int64]
+    move: NDArray[np.int32]
     wide: NDArray[np.int64]
     terms: NDArray[np.int32]
-    scratch: NDArray[np.int64]
-    packed: NDArray[np.int64]
-    reached: NDArray[np.int64]
+    terms_hash: NDArray[np.int32]
+    timed_key: NDArray[np.int64]
+    timed_hash: NDArray[np.int32]
+    timed_cost: NDArray[np.int32]
+    timed_row: NDArray[np.int32]
+    layer: NDArray[np.int32]
+    layer_state: NDArray[np.int32]
+    layer_key: NDArray[np.int64]
+    layer_hash: NDArray[np.int32]
+    transition: NDArray[np.int32]
+    transition_key: NDArray[np.int64]
+    transition_hash: NDArray[np.int32]
+    edge: NDArray[np.int64]
+    edge_move: NDArray[np.int32]
+    edge_limbs: NDArray[np.int32]
 
 
-class Making(NamedTuple):
-    """The rules, and the arrays for the ways to play a row."""
+class RowStates(NamedTuple):
+    """The states that each row can end in. Row r has the nodes row[r + 1, FIRST] to row[r + 2, FIRST]; node 0 is the
+    start.
 
-    rules: Rules
-    moves: Moves
+    row : int64 (n + 2, 2), first node, and cost of the cheapest node before each row
+    node : int64, extra cost of a node over the cheapest node of its row, and the edge to it; see `COST_SHIFT`
+    transition : int32 (n,), number of each row's transition, -1 if not found yet
+    """
 
-
-def geometry(pad: Pad) -> Geometry:
-    """Return the arrays of a pad."""
-    (x, y), c = pad.centre, len(pad)
-    pairs = [(a, b) for a in range(c) for b in range(a + 1, c) if pad.neighbours[a, b]]
-    if c + 1 + len(pairs) > MOST_PLACES:
-        raise UsageError(
-            f"pad '{pad.steps_type}' has too many neighbours ({len(pairs)} pairs): make its 'reach' smaller"
-        )
-    middles = np.array([(pad.panels[a] + pad.panels[b]) / 2 for a, b in pairs]).reshape(-1, 2)
-    left = np.concatenate([pad.panels, [[x - HOME_WIDTH, y]], middles])
-    right = np.concatenate([pad.panels, [[x + HOME_WIDTH, y]], middles])
-    across = right[None, :] - left[:, None]
-    angle = np.degrees(np.arctan2(across[..., 1], across[..., 0]))
-    angle[angle <= -180.0 + EPSILON] = 180.0
-    angle[np.hypot(across[..., 0], across[..., 1]) <= EPSILON] = 0.0
-    far = left[None, :] - left[:, None]
-    distance = np.round(DISTANCE_UNIT * np.hypot(far[..., 0], far[..., 1])).astype(np.int64)
-    place = np.full((c, c), -1, dtype=np.int64)
-    np.fill_diagonal(place, np.arange(c))
-    panels = np.full((len(left), 2, 2), -1, dtype=np.int64)
-    panels[:c, :, 0] = np.arange(c)[:, None]
-    for number, (a, b) in enumerate(pairs):
-        place[a, b] = place[b, a] = c + 1 + number
-        for foot in range(2):
-            panels[c + 1 + number, foot] = heel_and_toe(pad, a, b, foot)
-    bits = np.where(panels >= 0, np.int64(1) << panels.clip(min=0), np.int64(0)).astype(np.int64)
-    mask = bits[:, 0, 0] | bits[:, 0, 1]
-    around = np.where(place >= 0, np.int64(1) << np.arange(c), np.int64(0))
-    near = np.array([np.bitwise_or.reduce(around[(m >> np.arange(c) & 1).astype(bool)].ravel()) for m in mask.tolist()])
-    return Geometry(
-        left, right, angle, distance, place, panels, mask, near.astype(np.int64),
-        np.array([_arrow(*way) for way in pad.arrows]),
-        next((p for p in range(c) if np.hypot(*(pad.panels[p] - pad.centre)) <= EPSILON), -1),
-    )  # fmt: skip
+    row: NDArray[np.int64]
+    node: NDArray[np.int64]
+    transition: NDArray[np.int32]
 
 
-def _arrow(x: float, y: float) -> int:
-    if abs(x) <= EPSILON and abs(y) <= EPSILON:
-        return MIDDLE
-    if abs(x) > abs(y) + EPSILON:
-        return RIGHT if x > 0 else LEFT
-    return UP if y > 0 else DOWN
+class RowArrays(NamedTuple):
+    """`Rows` for the kernels, n rows and c columns, and the arrays that kernels compute from them.
+
+    forced : int64 (n,), limb codes of overrides, 3 bits for each column; of length 0 if there are no overrides
+    pattern : int32 (n,), number of the row's pattern
+    elapsed : int32 (n,), milliseconds since the last row with steps, at most MOST_MS
+    ends : int64 (c,), scratch: when the last hold of each column ends; second : float64 (n,)
+    """
+
+    tick: NDArray[np.int64]
+    steps: NDArray[np.uint8]
+    hold_end: NDArray[np.int64]
+    mines: NDArray[np.bool_]
+    milliseconds: NDArray[np.int64]
+    forced: NDArray[np.int64]
+    pattern: NDArray[np.int32]
+    elapsed: NDArray[np.int32]
+    ends: NDArray[np.int64]
+    second: NDArray[np.float64]
 
 
-def heel_and_toe(pad: Pad, a: int, b: int, foot: int) -> tuple[int, int]:
-    """Return the panels of a foot's heel and toe on two neighbours: the toe is nearer to the screen, else outside."""
-    (ax, ay), (bx, by) = pad.panels[a], pad.panels[b]
-    if abs(ay - by) > EPSILON:
-        return (a, b) if ay < by else (b, a)
-    return (a, b) if (ax > bx) == (foot == 0) else (b, a)
+class SolverPath(NamedTuple):
+    """The cheapest way, which kernels fill in. move : int32 (n,); limb : int8, part : uint8 (n, c)
+
+    margin : int64, -1 no other way; ambiguity : uint8, see `Play`; (n,), or of length 0 if not needed
+    cost : int32 (n + 1, t), cost of each row by term; the last row is scratch, and the only one if costs are not needed
+    edit : int64 (k, 6), see `EDIT_ROW`; of length 0 unless edits are tried
+    events : int32 (n,), bits of `vocabulary.EVENTS`; feet : int16 (n, 2), facing : float64 (n,), see `Play`; all three
+        are written with the cost
+    """
+
+    move: NDArray[np.int32]
+    limb: NDArray[np.int8]
+    part: NDArray[np.uint8]
+    margin: NDArray[np.int64]
+    ambiguity: NDArray[np.uint8]
+    edit: NDArray[np.int64]
+    cost: NDArray[np.int32]
+    events: NDArray[np.int32]
+    feet: NDArray[np.int16]
+    facing: NDArray[np.float64]
 
 
-def moves(weights: int, width: int = 1 << 10) -> Moves:
-    """Return empty arrays for the ways to play one row, and for a layer of `width` states."""
-    return Moves(
-        np.zeros((MOST_MOVES, 5), dtype=np.int64),
-        np.zeros((MOST_MOVES, weights), dtype=np.int32),
-        np.zeros((8, 32), dtype=np.int64),
-        np.empty(width, dtype=np.int64),
-        np.empty(16 * width, dtype=np.int64),
+@inner_kernel
+def slot_of(value, size):  # type: ignore[no-untyped-def]
+    """Return the slot at which the search for a number starts, in a hash table whose length is a power of two."""
+    return np.int64((np.uint64(value) * np.uint64(GOLDEN)) >> np.uint64(32)) & (size - 1)
+
+
+@inner_kernel
+def find(key, keys, numbers):  # type: ignore[no-untyped-def]
+    """Return the number of a key, or ~ its free slot if the key is not known."""
+    at = slot_of(key, len(numbers))
+    while numbers[at] >= 0:
+        if keys[numbers[at]] == key:
+            return np.int64(numbers[at])
+        at = (at + 1) & (len(numbers) - 1)
+    return ~at
+
+
+@inner_kernel
+def number_of(key, keys, numbers, counts, kind):  # type: ignore[no-untyped-def]
+    """Return the number of a key; a new key is entered. kind : place in `counts`"""
+    number = find(key, keys, numbers)
+    if number < 0:
+        at, number = ~number, np.int64(counts[kind])
+        counts[kind] += 1
+        numbers[at] = number
+        keys[number] = key
+    return number
+
+
+@inner_kernel
+def slot_of_pair(key, pairs):  # type: ignore[no-untyped-def]
+    """Return the slot of a pair in its table, or the free slot for it."""
+    at = slot_of(key, len(pairs))
+    while pairs[at, 0] >= 0 and pairs[at, 0] != key:
+        at = (at + 1) & (len(pairs) - 1)
+    return at
+
+
+@inner_kernel
+def _mixed(terms):  # type: ignore[no-untyped-def]
+    """Mix the costs by term into one number; the products are independent, so that this is fast."""
+    mixed, factor = np.int64(0), np.int64(_FIRST_FACTOR)
+    for term in range(len(terms)):
+        mixed += terms[term] * factor
+        factor += _NEXT_FACTOR
+    return mixed
+
+
+@inner_kernel
+def number_of_terms(terms, known, numbers, counts):  # type: ignore[no-untyped-def]
+    """Return the number of the costs by term (t,); new costs are entered."""
+    at = slot_of(_mixed(terms), len(numbers))
+    while numbers[at] >= 0:
+        number = numbers[at]
+        term = 0
+        while term < len(terms) and known[number, term] == terms[term]:
+            term += 1
+        if term == len(terms):
+            return np.int64(number)
+        at = (at + 1) & (len(numbers) - 1)
+    number = counts[TERMS_KNOWN]
+    counts[TERMS_KNOWN] += 1
+    numbers[at] = number
+    for term in range(len(terms)):
+        known[number, term] = terms[term]
+    return number
+
+
+@inner_kernel
+def number_of_layer(states, count, t):  # type: ignore[no-untyped-def]
+    """Return the number of the layer with the first `count` states in this order; a new layer is entered."""
+    layer, kept, keys, numbers, counts = t.layer, t.layer_state, t.layer_key, t.layer_hash, t.counts
+    mixed = np.int64(count)
+    for i in range(count):
+        mixed = mixed * 1000003 + states[i]
+    at = slot_of(mixed, len(numbers))
+    while numbers[at] >= 0:
+        number = numbers[at]
+        if keys[number] == mixed and layer[number, LAYER_SIZE] == count:
+            first, i = layer[number, LAYER_FIRST], 0
+            while i < count and kept[first + i] == states[i]:
+                i += 1
+            if i == count:
+                return np.int64(number)
+        at = (at + 1) & (len(numbers) - 1)
+    number, first = counts[LAYERS], counts[LAYER_STATES]
+    counts[LAYERS] += 1
+    counts[LAYER_STATES] += count
+    numbers[at] = number
+    keys[number], layer[number, LAYER_FIRST], layer[number, LAYER_SIZE] = mixed, first, count
+    for i in range(count):
+        kept[first + i] = states[i]
+    return np.int64(number)
+
+
+@kernel
+def fill_numbers(keys, table):  # type: ignore[no-untyped-def]
+    """Enter the numbers of distinct keys (n,) into an empty hash table."""
+    for number in range(len(keys)):
+        at = slot_of(keys[number], len(table))
+        while table[at] >= 0:
+            at = (at + 1) & (len(table) - 1)
+        table[at] = number
+
+
+@kernel
+def fill_pairs(old, new):  # type: ignore[no-untyped-def]
+    """Move all pairs into a larger empty table."""
+    for i in range(len(old)):
+        if old[i, 0] >= 0:
+            at = slot_of_pair(old[i, 0], new)
+            new[at, 0], new[at, 1] = old[i, 0], old[i, 1]
+
+
+def _filled(keys: NDArray[np.int64], size: int) -> NDArray[np.int32]:
+    """Return a hash table of the numbers of keys."""
+    table = np.full(size, -1, dtype=np.int32)
+    fill_numbers(keys, table)
+    return table
+
+
+# The first size of the solver's tables, and their growth when a kernel asks for it.
+
+
+def empty_tables(weights: int) -> Tables:
+    """Return tables with room for a few hundred charts: untouched room takes no memory, and growth copies a whole
+    table.
+    """
+    states, patterns, moves, pairs, costs, layers = 1 << 14, 1 << 12, 1 << 18, 1 << 18, 1 << 13, 1 << 15
+    edges, facts, times = 1 << 21, 1 << 10, 1 << 8
+    whole, small = np.int64, np.int32
+    return Tables(
+        counts=np.zeros(12, dtype=whole),
+        state_key=np.zeros(states, dtype=whole),
+        state_hash=np.full(2 * states, -1, dtype=small),
+        met=np.zeros((states, 2), dtype=small),
+        pattern=np.zeros((patterns, 2), dtype=whole),
+        pattern_hash=np.full(4 * patterns, -1, dtype=small),
+        pair=np.full((pairs, 2), -1, dtype=whole),
+        move=np.zeros((moves, 4), dtype=small),
+        wide=np.zeros((moves, 2), dtype=whole),
+        terms=np.zeros((costs, weights), dtype=small),
+        terms_hash=np.full(4 * costs, -1, dtype=small),
+        timed_key=np.zeros(2 * MOST_MOVES, dtype=whole),
+        timed_hash=np.full(1 << 15, -1, dtype=small),
+        timed_cost=np.zeros((times, facts), dtype=small),
+        timed_row=np.full(MOST_MS + 1, -1, dtype=small),
+        layer=np.zeros((layers, 2), dtype=small),
+        layer_state=np.zeros(16 * layers, dtype=small),
+        layer_key=np.zeros(layers, dtype=whole),
+        layer_hash=np.full(2 * layers, -1, dtype=small),
+        transition=np.zeros((2 * layers, 3), dtype=small),
+        transition_key=np.zeros(2 * layers, dtype=whole),
+        transition_hash=np.full(4 * layers, -1, dtype=small),
+        edge=np.zeros(edges, dtype=whole),
+        edge_move=np.zeros(edges, dtype=small),
+        edge_limbs=np.zeros(edges, dtype=small),
     )
+
+
+def clear_tables(t: Tables) -> None:
+    """Empty the tables in place. New ones would take memory for the untouched room, too: that of the old ones."""
+    t.met[: t.counts[STATES]] = 0
+    t.timed_cost[: t.counts[TIMES]] = UNKNOWN
+    t.counts[:] = 0
+    numbers = (t.state_hash, t.pattern_hash, t.pair, t.terms_hash, t.timed_hash, t.timed_row, t.layer_hash)
+    for table in (*numbers, t.transition_hash):
+        table.fill(-1)
+
+
+def grown(t: Tables, wanted: int, rows: int) -> Tables:
+    """Return the tables with more room in the table that `wanted` names."""
+    counts = t.counts
+    if wanted == MORE_STATES:
+        table = _filled(t.state_key[: counts[STATES]], 2 * len(t.state_hash))
+        met = np.zeros((2 * len(t.met), 2), dtype=np.int32)
+        return t._replace(state_key=_longer(t.state_key), state_hash=table, met=met)
+    if wanted == MORE_PATTERNS:
+        least = 1 << int(len(t.pattern) + rows).bit_length()
+        row, more = t.pattern[: counts[PATTERNS]].T
+        return t._replace(pattern=_longer(t.pattern, least), pattern_hash=_filled(row ^ more * 31, 4 * least))
+    if wanted == MORE_PAIRS:
+        pair = np.full((2 * len(t.pair), 2), -1, dtype=np.int64)
+        fill_pairs(t.pair, pair)
+        return t._replace(pair=pair)
+    if wanted == MORE_TERMS:
+        factors = _FIRST_FACTOR + _NEXT_FACTOR * np.arange(t.terms.shape[1])
+        table = _filled(t.terms[: counts[TERMS_KNOWN]].astype(np.int64) @ factors, 2 * len(t.terms_hash))
+        return t._replace(terms=_longer(t.terms), terms_hash=table)
+    if wanted == MORE_FACTS:
+        table = _filled(t.timed_key[: counts[FACTS_KNOWN]], 2 * len(t.timed_hash))
+        return t._replace(timed_key=_longer(t.timed_key), timed_hash=table)
+    if wanted == MORE_TIMED:
+        times, (length, width), facts = int(counts[TIMES]), t.timed_cost.shape, int(counts[FACTS_KNOWN])
+        shape = (2 * length if times == length else length, 2 * facts if facts > width else width)
+        cost = np.zeros(shape, dtype=np.int32)
+        cost[:times, :width] = t.timed_cost[:times]
+        return t._replace(timed_cost=cost)
+    if wanted == MORE_LAYERS:
+        table = _filled(t.layer_key[: counts[LAYERS]], 2 * len(t.layer_hash))
+        return t._replace(layer=_longer(t.layer), layer_key=_longer(t.layer_key), layer_hash=table)
+    if wanted == MORE_TRANSITIONS:
+        table = _filled(t.transition_key[: counts[TRANSITIONS]], 2 * len(t.transition_hash))
+        return t._replace(
+            transition=_longer(t.transition), transition_key=_longer(t.transition_key), transition_hash=table
+        )
+    if wanted == MORE_LAYER_STATES:
+        return t._replace(layer_state=_longer(t.layer_state))
+    if wanted == MORE_EDGES:
+        return t._replace(edge=_longer(t.edge), edge_move=_longer(t.edge_move), edge_limbs=_longer(t.edge_limbs))
+    return t._replace(move=_longer(t.move), wide=_longer(t.wide))
+
+
+def _longer(array: NDArray[Any], least: int = 0) -> NDArray[Any]:
+    """Return a copy of at least twice the length; the new part is untouched, so that it takes no memory before use."""
+    longer = np.empty((max(2 * len(array), least), *array.shape[1:]), dtype=array.dtype)
+    longer[: len(array)] = array
+    return longer

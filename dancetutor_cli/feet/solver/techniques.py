@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.feet.pads import Pad
-from dancetutor_cli.feet.solver.tables import EPSILON
+from dancetutor_cli.feet.solver.packing import EPSILON
 from dancetutor_cli.feet.solver.vocabulary import EVENTS
 from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.schema import NotNegative
@@ -56,7 +56,7 @@ class EventNames(Sequence[tuple[str, ...]]):
 
 @cache
 def event_names(bits: int) -> tuple[str, ...]:
-    """The names of events by their bits, sorted; always the same object for the same bits."""
+    """Return the names of events by their bits, sorted; always the same object for the same bits."""
     return tuple(sorted(name for bit, name in enumerate(EVENTS) if bits >> bit & 1))
 
 
@@ -90,7 +90,7 @@ class _Moves:
 
 
 def limits() -> NDArray[np.float64]:
-    """Return the limits of moves, in the order of `tables.GALLOP_TICKS` and the constants after it."""
+    """Return the limits of moves, in the order of `packing.GALLOP_TICKS` and the constants after it."""
     moves = _moves()
     gallop = (moves.gallop.beats * TICKS_PER_BEAT, moves.gallop.seconds, moves.gallop.neighbours)
     stream, drill = ((run.beats * TICKS_PER_BEAT, run.seconds, run.length) for run in (moves.stream, moves.drill))

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dancetutor_cli.feet.solver import tables
+from dancetutor_cli.feet.solver import packing
 from dancetutor_cli.feet.solver.compiled import inner_kernel
 from dancetutor_cli.feet.solver.state import (
     LAST,
@@ -38,7 +38,7 @@ _HALF, _FULL, _SPIN, _DOUBLESTEP, _FORCED, _JUMP_FOOTSWITCH, _HAND, _JUMP, _UNPL
         "jump", "unplayable", "crossover-front", "crossover-back",
     )
 )  # fmt: skip
-_MASK = (1 << tables.COLUMN_BITS) - 1
+_MASK = (1 << packing.COLUMN_BITS) - 1
 
 
 Whole = int | np.int64  # the integers of Python and of numba
@@ -96,17 +96,17 @@ def _charge_hand(terms, s, hand, panel, rules):  # type: ignore[no-untyped-def]
     g, w = rules.geometry, rules.weights
     x = g.left[panel, 0] - (g.left[s[LEFT_AT], 0] + g.right[s[RIGHT_AT], 0]) / 2
     y = g.left[panel, 1] - (g.left[s[LEFT_AT], 1] + g.right[s[RIGHT_AT], 1]) / 2
-    if math.hypot(x, y) <= tables.EPSILON:
+    if math.hypot(x, y) <= packing.EPSILON:
         return
     facing = math.radians(g.angle[s[LEFT_AT], s[RIGHT_AT]])
     lateral = x * math.cos(facing) + y * math.sin(facing)
     ahead = -x * math.sin(facing) + y * math.cos(facing)
-    if (lateral > tables.EPSILON and hand == 0) or (lateral < -tables.EPSILON and hand == 1):
+    if (lateral > packing.EPSILON and hand == 0) or (lateral < -packing.EPSILON and hand == 1):
         terms[HAND_ACROSS] += w[HAND_ACROSS]
     off = math.degrees(math.atan2(abs(lateral), ahead))
-    if off > 90.0 + tables.EPSILON:
+    if off > 90.0 + packing.EPSILON:
         terms[HAND_BEHIND] += w[HAND_BEHIND]
-    elif off > 45.0 + tables.EPSILON:
+    elif off > 45.0 + packing.EPSILON:
         terms[HAND_ASIDE] += w[HAND_ASIDE]
 
 
@@ -148,17 +148,17 @@ def _emit(out, m, asked, doublestep, rules):  # type: ignore[no-untyped-def]
     s[SIDE] = side
     action = events = 0
     for i in range(n):
-        limb = tables.UNPLAYED_CODE
+        limb = packing.UNPLAYED_CODE
         for j in range(4):
             if press[j] == panels[i]:
                 limb = j + 1
         action |= limb << 3 * panels[i]
-        if limb == tables.UNPLAYED_CODE:
+        if limb == packing.UNPLAYED_CODE:
             terms[UNPLAYABLE] += w[UNPLAYABLE]
             events |= _UNPLAYABLE
-    if g.right[s[1], 0] < g.left[s[0], 0] - tables.EPSILON:
+    if g.right[s[1], 0] < g.left[s[0], 0] - packing.EPSILON:
         terms[CROSSOVER] = w[CROSSOVER]
-        events |= _FULL if abs(g.angle[s[0], s[1]]) >= 180.0 - tables.EPSILON else _HALF
+        events |= _FULL if abs(g.angle[s[0], s[1]]) >= 180.0 - packing.EPSILON else _HALF
         ahead = g.left[s[0], 1] - g.right[s[1], 1]
         if events & _HALF and (press[0] < 0) != (press[1] < 0):  # one foot moved, in front of the other or behind it
             events |= _FRONT if (ahead > 0 if press[0] >= 0 else ahead < 0) else _BACK
@@ -170,9 +170,9 @@ def _emit(out, m, asked, doublestep, rules):  # type: ignore[no-untyped-def]
     if spin:
         terms[SPIN] = w[SPIN]
         events |= _SPIN
-    if degrees >= 180.0 - tables.EPSILON:
+    if degrees >= 180.0 - packing.EPSILON:
         terms[TURN_180] = w[TURN_180]
-    elif degrees >= 135.0 - tables.EPSILON:
+    elif degrees >= 135.0 - packing.EPSILON:
         terms[TURN_135] = w[TURN_135]
     for foot in range(2):
         free = not before[LEFT_HELD + foot]
@@ -188,8 +188,8 @@ def _emit(out, m, asked, doublestep, rules):  # type: ignore[no-untyped-def]
     if press[0] >= 0 and press[1] >= 0:
         events |= _JUMP
     wide = out.wide[m]
-    wide[tables.MOVE_KEY], wide[tables.MOVE_ACTION], wide[tables.MOVE_EVENTS] = pack(s), action, events
-    wide[tables.MOVE_PART] = wide[tables.MOVE_TIMED] = 0
+    wide[packing.MOVE_KEY], wide[packing.MOVE_ACTION], wide[packing.MOVE_EVENTS] = pack(s), action, events
+    wide[packing.MOVE_PART] = wide[packing.MOVE_TIMED] = 0
     return m + 1
 
 
@@ -260,9 +260,9 @@ def expand_thesis(key, row, forced, rules, out):  # type: ignore[no-untyped-def]
     """
     g, before, panels = rules.geometry, out.scratch[BEFORE], out.scratch[PANELS]
     unpack(key, before)
-    holds = row >> tables.HOLDS & _MASK
-    steps = (row >> tables.TAPS | row >> tables.HOLDS | row >> tables.ROLLS | row >> tables.ROLL_TAPS) & _MASK
-    _release_and_flee(before, row >> tables.RELEASED & _MASK, row >> tables.MINES & _MASK, g)
+    holds = row >> packing.HOLDS & _MASK
+    steps = (row >> packing.TAPS | row >> packing.HOLDS | row >> packing.ROLLS | row >> packing.ROLL_TAPS) & _MASK
+    _release_and_flee(before, row >> packing.RELEASED & _MASK, row >> packing.MINES & _MASK, g)
     n = np.int64(0)
     for panel in range(g.place.shape[0]):
         if steps >> panel & 1:
@@ -271,7 +271,7 @@ def expand_thesis(key, row, forced, rules, out):  # type: ignore[no-untyped-def]
     if n == 0:
         for i in range(5):
             out.wide[0, i] = 0
-        out.wide[0, tables.MOVE_KEY] = pack(before)
+        out.wide[0, packing.MOVE_KEY] = pack(before)
         for i in range(out.terms.shape[1]):
             out.terms[0, i] = 0
         return 1
