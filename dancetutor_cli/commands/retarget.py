@@ -122,11 +122,11 @@ def _written(work: Retargeting, output: Path, with_input: bool) -> str:
     motion = work.output_on_character
     suffix = output.suffix.lower()
     if suffix == ".mp4":
-        from dancetutor_cli.film.work.motion_film import Comparison, film
+        from dancetutor_cli.film.work.motion_film import Comparison, write_motion_film
 
         seconds = float(motion.times[-1] - motion.times[0])
         compared = Comparison(work.input_on_character, *work.point_paths()) if with_input else None
-        return f"{film(output, work.character, motion, compared)} frames, {seconds:.1f} s"
+        return f"{write_motion_film(output, work.character, motion, compared)} frames, {seconds:.1f} s"
     if suffix == ".html":
         from dancetutor_cli.page.capture import CaptureContent, capture_page
 

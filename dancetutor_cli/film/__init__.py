@@ -2,7 +2,7 @@
 
 The packages `overlay`, `scene` and `media` do not import each other. "She" is the dancer in the picture.
 
-overlay                 the flat layer on top: highway, captions, pad diagram, words, and their sprites and letters
+overlay                 the flat layer on top: highway, words, legend, pad diagram, and their sprites and letters
 scene                   the three-dimensional part: camera, stage, the dancer's meshes, and the renderers `cpu` and `gl`
 media                   everything beside the pictures: ffmpeg, encoder, sound, subtitles
 plan                    everything that the frames of a film need, as plain data

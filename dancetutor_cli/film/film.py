@@ -11,7 +11,7 @@ import numpy as np
 from dancetutor_cli.film.clock import JointBlocks
 from dancetutor_cli.film.layout import WIDE_PAD
 from dancetutor_cli.film.notes import PanelLights, lighting
-from dancetutor_cli.film.overlay import captions, marks
+from dancetutor_cli.film.overlay import footer, marks, sprites
 from dancetutor_cli.film.overlay.announce import Runs
 from dancetutor_cli.film.overlay.blit import Box
 from dancetutor_cli.film.overlay.diagram import FeetDiagram, Lettering, NextRows, PadMap, PadView, below, name_sprite
@@ -21,7 +21,7 @@ from dancetutor_cli.film.overlay.marks import HighwayGeometry, lane_width_for_wo
 from dancetutor_cli.film.overlay.sprites import WordStyle, callout_words, highway_style
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.picture import Frame, darkened
-from dancetutor_cli.film.placement import PartBoxes, Placement, Stay, placement, stay
+from dancetutor_cli.film.placement import PartBoxes, Placement, Stay, place_words, stay
 from dancetutor_cli.film.plan import FilmPlan, faces_viewer
 from dancetutor_cli.film.scene.props import Television
 from dancetutor_cli.film.scroll import parse_scroll
@@ -29,7 +29,7 @@ from dancetutor_cli.film.words import standing_tags
 from dancetutor_cli.run.languages import load_language
 
 if TYPE_CHECKING:
-    from dancetutor_cli.film.overlay.captions import Legend
+    from dancetutor_cli.film.overlay.footer import Legend
     from dancetutor_cli.film.scene.dancer import Dancer
 
     MakesWay = Lines | Legend | Runs | FeetDiagram
@@ -60,7 +60,7 @@ class Film:
         self.base[...] = BACKGROUND
         if (strip := self.layout.progress) is not None:  # the ground reaches the picture's edge, the graph may not
             left, top, _, bottom = self.boxes.box("progress")
-            captions.strip_ground(self.base[top:bottom, left:], self.scale * strip.text)
+            footer.strip_ground(self.base[top:bottom, left:], self.scale * strip.text)
         self.highway = self._highway() if self.layout.highway else None
         if (screen := self.layout.screen_for(self.boxes.breadth)) is not None:
             width, height = screen.pixels
@@ -108,13 +108,13 @@ class Film:
         """The places of the words, for all frames."""
         dancer = self._dancer.heads_and_feet if self.layout.dancer and self.plan.motions else None
         lettering = WordStyle(self.face, self.style, self.language)
-        return placement(self.plan, self.boxes, lettering, dancer, self.faces_viewer)
+        return place_words(self.plan, self.boxes, lettering, dancer, self.faces_viewer)
 
     @cached_property
-    def _progress(self) -> captions.ProgressStrip | None:
+    def _progress(self) -> footer.ProgressStrip | None:
         if (part := self.layout.progress) is None:
             return None
-        return captions.ProgressStrip(
+        return footer.ProgressStrip(
             self.plan.song, self.boxes.box("progress"), self.scale * part.text, self.face, self.style
         )
 
@@ -151,7 +151,7 @@ class Film:
         large, small = None, None
         view = PadView(plan.pad, self._directions, self.faces_viewer)
         if feet:
-            rims = self.style.players if plan.dancers > 1 else (captions.WHITE,)
+            rims = self.style.players if plan.dancers > 1 else (sprites.WHITE,)
             now = name_sprite(self.language.film["now"], self.face, self.scale) if after else None
             large = FeetDiagram(PadMap(view, below(feet, now)), self.lights, self.face, rims, now)
         if after and plan.rows is not None:

@@ -19,7 +19,7 @@ from dancetutor_cli.film.clock import Moment, Pass
 from dancetutor_cli.film.layout import WIDE_PAD, Layout, PixelBox, lowered, overlap
 from dancetutor_cli.film.notes import Callout, Presses
 from dancetutor_cli.film.overlay.announce import Calls, Runs
-from dancetutor_cli.film.overlay.captions import Legend, LegendWords
+from dancetutor_cli.film.overlay.footer import Legend, LegendWords
 from dancetutor_cli.film.overlay.header import Header, WordsRoom
 from dancetutor_cli.film.overlay.marks import visible_limbs
 
@@ -76,7 +76,7 @@ class Placement:
     calls: Calls | None
 
 
-def placement(plan: FilmPlan, boxes: PartBoxes, style: WordStyle, seen: SeenAt | None, turned: bool) -> Placement:
+def place_words(plan: FilmPlan, boxes: PartBoxes, style: WordStyle, seen: SeenAt | None, turned: bool) -> Placement:
     """Find the places of all words of a film.
 
     seen : returns the boxes of the dancers' heads and feet in the dancer's box at these moments, (n, 4); None without

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from dancetutor_cli.film.clock import Clock
 from dancetutor_cli.film.layout import FilmLook
 from dancetutor_cli.film.notes import BeatLines, Callout, Cue, NoteTrack, Presses
-from dancetutor_cli.film.overlay.captions import SongShape
 from dancetutor_cli.film.overlay.diagram import DiagramRows
+from dancetutor_cli.film.overlay.footer import SongShape
 from dancetutor_cli.film.overlay.header import Words
 from dancetutor_cli.film.scene.camera import is_front_view
 from dancetutor_cli.film.scene.look import default_look

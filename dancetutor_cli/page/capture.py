@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.smoothing import low_pass, sample_path
 from dancetutor_cli.dance.units import Array
+from dancetutor_cli.film.scene.bare_floor import FOCAL, FOLLOWED_BELOW, FULL_RED, TARGET_HEIGHT, floor_under
 from dancetutor_cli.film.scene.scene import PANEL, Scene
-from dancetutor_cli.film.work.motion_film import ALONG, FAR, FOCAL, LOOK, floor_under
 from dancetutor_cli.page.content import pack_body, pack_motion, pack_stage
 from dancetutor_cli.page.document import Blob, document
 
@@ -60,10 +60,10 @@ def capture_page(content: CaptureContent) -> bytes:
         "clock": {"rate": RATE, "keys": len(at), "start": float(times[0]), "end": float(times[-1]), "step": STEP},
         "parents": content.parents.tolist(),
         "points": list(content.names),
-        "far": FAR,
-        "camera": {"focal": FOCAL, "height": LOOK},
+        "far": FULL_RED,
+        "camera": {"focal": FOCAL, "height": TARGET_HEIGHT},
     }
-    slow = low_pass(sample_path(motion.root, times, at), RATE, ALONG)
+    slow = low_pass(sample_path(motion.root, times, at), RATE, FOLLOWED_BELOW)
     tracks = {"skeleton": content.skeleton, "before": content.before, "after": content.after}
     for name, places in (*((name, sample_path(track, times, at)) for name, track in tracks.items()), ("way", slow)):
         blob.add(name, np.rint(places.reshape(len(at), -1) / STEP).T, "i4", 2)

@@ -162,7 +162,7 @@ def test_input_and_output_are_side_by_side_with_distances_where_they_are(
         given(iter(kept), *rest)
 
     monkeypatch.setattr(motion_film, "SIZE", (160, 160))
-    monkeypatch.setattr(motion_film, "FAR", 0.6)
+    monkeypatch.setattr(motion_film, "FULL_RED", 0.6)
     monkeypatch.setattr(motion_film, "encode_segment", encoding)
     soft = tmp_path / "soft.yaml"
     soft.write_text("points: {l_radiocarpal: {frequency: 1, damping: 0.5}}\n")

@@ -15,7 +15,7 @@ from dancetutor_cli.dance.motion import Cut, Motion
 from dancetutor_cli.dance.performance import Performance, perform, solve
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.film.layout import FilmLook, load_layout
-from dancetutor_cli.film.work.film_dance import FilmDance, film_dance
+from dancetutor_cli.film.work.film_dance import FilmDance, bake_film_dance
 from dancetutor_cli.film.work.request import FilmRequest, look_up
 from dancetutor_cli.formats.npz import read_npz
 from dancetutor_cli.run.errors import UsageError
@@ -83,7 +83,7 @@ def film(song: Path, *motions: Path, **more: object) -> FilmRequest:
 
 
 def danced(wanted: FilmRequest) -> FilmDance:
-    return film_dance(wanted, look_up(wanted))
+    return bake_film_dance(wanted, look_up(wanted))
 
 
 def assert_equal(one: Motion, other: Motion) -> None:

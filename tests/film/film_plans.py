@@ -9,7 +9,7 @@ from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.notes import BeatLines, NoteTrack, Presses
-from dancetutor_cli.film.overlay.captions import SongShape
+from dancetutor_cli.film.overlay.footer import SongShape
 from dancetutor_cli.film.overlay.header import Words
 from dancetutor_cli.film.plan import FilmPlan
 

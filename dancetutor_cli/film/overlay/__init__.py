@@ -2,6 +2,6 @@
 
 highway, marks, sprites       the notes; the marks and words on and beside them; their sprites
 callouts, announce            the passages that are called out; the time and place of calls
-header, captions, diagram     the song's words; legend, time and density; the pad from above
+header, footer, diagram       the song's words; legend, time and density; the pad from above
 text, blit                    words as sprites; sprites and shapes on a frame
 """

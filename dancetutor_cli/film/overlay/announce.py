@@ -13,8 +13,7 @@ from dancetutor_cli.film.clock import Clock
 from dancetutor_cli.film.layout import PixelBox
 from dancetutor_cli.film.notes import Callout
 from dancetutor_cli.film.overlay.blit import Box, Sprite, blit, rectangle
-from dancetutor_cli.film.overlay.captions import SOFT, WHITE, box_of
-from dancetutor_cli.film.overlay.sprites import FLAG_EDGE, WordStyle, flag, flag_height
+from dancetutor_cli.film.overlay.sprites import FLAG_EDGE, SOFT, WHITE, WordStyle, box_of, flag, flag_height
 from dancetutor_cli.film.overlay.text import Typeface, fit_text, wrap_words
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.run.languages import Language

@@ -14,9 +14,8 @@ from dancetutor_cli.feet.limbs import Limb, limb_colours
 from dancetutor_cli.feet.play import StepKind
 from dancetutor_cli.film.layout import PixelBox
 from dancetutor_cli.film.notes import EPSILON, PanelLights
-from dancetutor_cli.film.overlay import blit as shapes
-from dancetutor_cli.film.overlay import sprites
-from dancetutor_cli.film.overlay.blit import Box, Sprite, blit
+from dancetutor_cli.film.overlay import blit, sprites
+from dancetutor_cli.film.overlay.blit import Box, Sprite
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.picture import FootFromAbove, Frame
 from dancetutor_cli.run.schema import RGB
@@ -129,21 +128,21 @@ class PadMap:
         for (x, y), direction, (level, limb) in zip(self.panels, self.directions, lit, strict=True):
             px, py = self.place(x, y)
             at = (round(px - size / 2), round(py - size / 2))
-            blit(frame, panel_sprite(size, direction, None), *at, opacity)
+            blit.blit(frame, panel_sprite(size, direction, None), *at, opacity)
             if level > 0 and limb >= 0:
-                blit(frame, panel_sprite(size, direction, limb), *at, level * opacity)
+                blit.blit(frame, panel_sprite(size, direction, limb), *at, level * opacity)
 
 
 @lru_cache(maxsize=128)
 def panel_sprite(size: int, direction: float | None, limb: int | None) -> Sprite:
     """Draw a panel with its arrow, lit in the colour of `limb` unless that is None."""
-    p = shapes.Painter(size, size)
-    d = shapes.rounded_box(p.x, p.y, size / 2 - 1, size / 2 - 1, 0.09 * size)
+    p = blit.Painter(size, size)
+    d = blit.rounded_box(p.x, p.y, size / 2 - 1, size / 2 - 1, 0.09 * size)
     colour = None if limb is None else np.array(limb_colours().by_limb[limb], dtype=np.float64)
-    p.paint(shapes.cover(d), PANEL_EDGE if colour is None else np.clip(colour * 1.1, 0, 255))
-    p.paint(shapes.cover(d + 0.025 * size), PANEL if colour is None else colour * 0.75)
+    p.paint(blit.cover(d), PANEL_EDGE if colour is None else np.clip(colour * 1.1, 0, 255))
+    p.paint(blit.cover(d + 0.025 * size), PANEL if colour is None else colour * 0.75)
     arrow = sprites.distance(size, size * 0.62, direction)
-    p.paint(shapes.cover(arrow), (120, 128, 168) if colour is None else (255, 255, 255), 0.55)
+    p.paint(blit.cover(arrow), (120, 128, 168) if colour is None else (255, 255, 255), 0.55)
     return p.sprite()
 
 
@@ -152,7 +151,7 @@ def shoe_sprite(
     size: int, degrees: int, limb: int, face: Typeface, ghost: bool, rim: tuple[int, int, int] = (255, 255, 255)
 ) -> Sprite:
     """Draw a sole from above with its letter, its toe turned `degrees` clockwise from the screen."""
-    p = shapes.Painter(size, size)
+    p = blit.Painter(size, size)
     a = np.radians(degrees)
     x, y = p.x * np.cos(a) + p.y * np.sin(a), -p.x * np.sin(a) + p.y * np.cos(a)
     mirror = 1 if limb == 0 else -1
@@ -162,9 +161,9 @@ def shoe_sprite(
     capsule = np.hypot(x / size - bend, np.maximum(np.abs(y / size) - 0.26, 0)) - width
     d = capsule * size
     colour = np.array(limb_colours().by_limb[limb], dtype=np.float64)
-    p.paint(shapes.cover(d - 0.012 * size), (8, 9, 16), 0.85 if not ghost else 0.4)
-    p.paint(shapes.cover(d + 0.005 * size), rim, 0.95 if not ghost else 0.5)
-    p.paint(shapes.cover(d + 0.03 * size), colour, 1.0 if not ghost else 0.55)
+    p.paint(blit.cover(d - 0.012 * size), (8, 9, 16), 0.85 if not ghost else 0.4)
+    p.paint(blit.cover(d + 0.005 * size), rim, 0.95 if not ghost else 0.5)
+    p.paint(blit.cover(d + 0.03 * size), colour, 1.0 if not ghost else 0.55)
     out = p.sprite()
     sprites.centre(out, face.sprite("LR"[limb], 0.3 * size, (10, 11, 20), weight=0.012 * size))
     return out
@@ -204,7 +203,7 @@ class FeetDiagram:
         """
         self.pads.draw(frame, [self.lights.at(column, second) for column in range(len(self.pads.panels))], opacity)
         if self.name is not None:
-            blit(frame, self.name, *above(self.pads, self.name), opacity)
+            blit.blit(frame, self.name, *above(self.pads, self.name), opacity)
         for number, foot in enumerate(feet):
             if foot is None:
                 continue
@@ -216,7 +215,7 @@ class FeetDiagram:
             middle = (foot.heel[0] + foot.toe[0]) / 2, (foot.heel[1] + foot.toe[1]) / 2
             x, y = self.pads.place(*middle)
             if (seen := self.pads.nearness(*middle)) > 0.0:  # the dancer may walk beside the pad
-                blit(frame, shoe, round(x - size / 2), y - size / 2, seen * opacity)
+                blit.blit(frame, shoe, round(x - size / 2), y - size / 2, seen * opacity)
 
 
 def name_sprite(name: str, face: Typeface, scale: float) -> Sprite:
@@ -303,7 +302,7 @@ class NextRows:
                 if column >= 0 and limbs[column] < 0:
                     self._mark(frame, pads, int(column), foot % 2, RESTING)
             name = self.name(place, row)
-            blit(frame, name, *self._corner(pads, name))
+            blit.blit(frame, name, *self._corner(pads, name))
 
     def name(self, place: int, row: int) -> Sprite:
         """Return the name of the pad at `place`, which shows this row."""
@@ -322,4 +321,4 @@ class NextRows:
         mark = _marker(max(8, round(share * pads.unit)), limb, self.face)
         x, y = pads.place(*pads.panels[column])
         at = (round(x - mark.shape[1] / 2), round(y - mark.shape[0] / 2))
-        blit(frame, mark, *at, 1.0 if share == STEPPED else 0.6)
+        blit.blit(frame, mark, *at, 1.0 if share == STEPPED else 0.6)

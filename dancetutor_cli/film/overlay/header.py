@@ -15,8 +15,7 @@ from dancetutor_cli.chart.density import bpm_text
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.film.layout import PixelBox, lowered
 from dancetutor_cli.film.overlay.blit import Box, Sprite, blit
-from dancetutor_cli.film.overlay.captions import SOFT, WHITE, box_of, plate
-from dancetutor_cli.film.overlay.sprites import WordStyle
+from dancetutor_cli.film.overlay.sprites import SOFT, WHITE, WordStyle, box_of, plate
 from dancetutor_cli.film.overlay.text import LONGEST, Typeface, clean, fit_text, in_lines
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.run.languages import Language

@@ -1,4 +1,4 @@
-"""The sprites of the highway, drawn once for a lane width: arrows, receptors, flashes, mines, holds and L/R markers."""
+"""Sprites, drawn once for a size: arrows, receptors, flashes, mines, holds, L/R markers, and plates of words."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.feet.limbs import limb_colours
 from dancetutor_cli.film.overlay import blit
-from dancetutor_cli.film.overlay.blit import Sprite
+from dancetutor_cli.film.overlay.blit import Box, Sprite
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.words import move_words
 from dancetutor_cli.run.languages import Language
@@ -31,12 +31,10 @@ _WIDTH = 0.94  # width of an arrow's shape in any direction, as a share of its s
 
 FLAG_STEP = 1.15  # distance between the lines of a label, in sizes of its letters
 FLAG_EDGE = 0.55  # sum of the gaps left and right of a label's words, in sizes of its letters
+WHITE, SOFT, INK = (255, 255, 255), (196, 202, 222), (12, 13, 22)  # colours of words, and of plates below them
 NOBODY = (150, 154, 170)  # colour of the mark of a note that is not played
 # Darkening at the end of an arrow's tail, and the share of the tail's half over which it grows: the head stands out.
-TAIL_DIM, TAIL_LONG = (
-    0.6,
-    0.75,
-)
+TAIL_DIM, TAIL_LONG = 0.6, 0.75
 
 
 @dataclass(frozen=True, slots=True)
@@ -275,3 +273,28 @@ def shade(size: int) -> Sprite:
     p = blit.Painter(size, size)
     p.paint(np.clip(1 - np.hypot(p.x, p.y) / (0.5 * size), 0, 1), (0, 0, 0), 0.6)
     return p.sprite()
+
+
+def box_of(sprite: Sprite, x: float, y: float) -> Box:
+    """Return left, top, right and bottom of a sprite whose top left corner is at (x, y)."""
+    return x, y, x + sprite.shape[1], y + sprite.shape[0]
+
+
+def plate(lines: Sequence[str], size: float, colour: tuple[int, int, int], face: Typeface) -> Sprite:
+    """Draw lines of dark words on a coloured plate with round ends."""
+    words = [face.sprite(line, size, INK, weight=size / 62) for line in lines]
+    one, step = max(8, round(1.55 * size)), round(1.2 * size)
+    height = one + step * (len(lines) - 1)
+    width = max(max(line.shape[1] for line in words) + one // 2 + 2, one)
+    out = lozenge(height, width, one / 2 - 1, colour)
+    for number, line in enumerate(words):
+        centre(out[number * step : number * step + one], line)
+    return out
+
+
+def lozenge(height: int, width: int, radius: float, colour: tuple[int, int, int], opacity: float = 1) -> Sprite:
+    """Draw a box with round corners."""
+    painter = blit.Painter(height, width)
+    d = blit.rounded_box(painter.x, painter.y, width / 2 - 1, height / 2 - 1, radius)
+    painter.paint(blit.cover(d), colour, opacity)
+    return painter.sprite()

@@ -4,5 +4,6 @@ scene, look                   the still scene and the state of one frame; their 
 dancer, visibility            the dancer's state at a moment; her hidden parts
 camera, follow                the cameras; a camera that follows her across a wide pad
 geometry, props               meshes as flat arrays; bar and screen
+bare_floor                    the floor and the camera of a motion without a chart
 renderer, shared              the interface of both renderers and the choice; their common computations
 """

@@ -69,7 +69,7 @@ def skins_of(meshes: list[Mesh]) -> Skins:
     )
 
 
-def density(
+def texture_density(
     positions: NDArray[np.float32], uv: NDArray[np.float32], triangles: NDArray[np.int32]
 ) -> NDArray[np.float32]:
     """Return the mean length of texture on a metre of each triangle (t,), as a share of the texture's side."""
@@ -185,7 +185,7 @@ def _packed(character: Character) -> PackedMeshes:
         material=material,
         above=(ABOVE * np.clip(2.0 * _share(character, joints, weights, BELOW) - 0.5, 0.0, 1.0)).astype(np.float32),
         patch=_patches(triangles, len(positions)),
-        density=density(positions, uv, triangles) * side[material[triangles[:, 0]]],
+        density=texture_density(positions, uv, triangles) * side[material[triangles[:, 0]]],
         skins=skins,
     )
 

@@ -111,7 +111,7 @@ class FilmDance:
     on_mines: tuple[OnMine, ...] = ()
 
 
-def film_dance(request: FilmRequest, subject: FilmSubject) -> FilmDance:
+def bake_film_dance(request: FilmRequest, subject: FilmSubject) -> FilmDance:
     """Find the feet and bake the motions. UsageError for a steps type without a pad."""
     clock = subject.clock
     solved = solve(request.dance, subject.choice)
@@ -125,8 +125,10 @@ def film_dance(request: FilmRequest, subject: FilmSubject) -> FilmDance:
             motions[rate] = (
                 _file_motions(request, performance) if request.motions else _cut(request, performance, clock)
             )
-    results, on_mines = _mines(motions, list(zip(solved, plays, strict=True)), rates[-1])
     shown = shown_play(play_of_all(solved, plays), clock.passes)  # also without rows that have become empty
+    under = {rate: _mines_under_feet(some, solved, plays, rate) for rate, some in motions.items()}
+    results = {rate: tuple(map(_with_mine_notes, some, under[rate])) for rate, some in motions.items()}
+    on_mines = _on_mines(solved, plays, under[rates[-1]]) if motions else ()
     return FilmDance(solved, plays, shown, pad_of(solved), results, on_mines)
 
 
@@ -149,33 +151,38 @@ def _file_motions(request: FilmRequest, performance: Performance) -> tuple[Motio
     return tuple(read_npz(path) for path in request.motions)
 
 
-def _mines(
-    motions: Mapping[float, Sequence[Motion]], plays: Sequence[tuple[Solved, Play]], fastest: float
-) -> tuple[dict[float, tuple[Motion, ...]], tuple[OnMine, ...]]:
-    """Return the motions with notes about mines under a foot, and these mines at the fastest rate."""
-    pad = pad_of([one for one, _ in plays])
-    out: dict[float, tuple[Motion, ...]] = {}
-    found: list[OnMine] = []
-    for rate, some in motions.items():
-        results = []
-        for motion, (one, play) in zip(some, plays, strict=True):
-            assert one.pad is not None
-            mines = mines_of(as_heard(play, one.chart.timing.at_rate(rate)), one.pad)
-            if len(plays) > 1:
-                mines += [0.0, *place_on(pad, one.chart, one.pad)]
-            under = feet_on_mines(motion, mines)
-            results.append(replace(motion, notes=(*motion.notes, *mine_messages(mines[under >= 0, 0]))))
-            if rate == fastest:
-                found += _on_mines(one, play, under, len(plays) > 1)
-        out[rate] = tuple(results)
-    return out, tuple(found)
+class _UnderFeet(NamedTuple):
+    """The mines of a dancer at one rate. second : (m,) as heard; foot : (m,) the foot over it, 0 or 1, -1 for none"""
+
+    second: NDArray[np.float64]
+    foot: NDArray[np.int8]
 
 
-def _on_mines(one: Solved, play: Play, under: np.ndarray, by_two: bool) -> list[OnMine]:
-    row, column = (places[under >= 0] for places in np.nonzero(play.rows.mines))
-    at, who = (one.chart.first_column, one.chart.player) if by_two else (0, 0)
-    ticks = play.rows.tick[row].tolist()
-    return [
-        OnMine(tick, c + at, foot, who)
-        for tick, c, foot in zip(ticks, column.tolist(), under[under >= 0].tolist(), strict=True)
-    ]
+def _mines_under_feet(
+    motions: Sequence[Motion], solved: Sequence[Solved], plays: Sequence[Play], rate: float
+) -> list[_UnderFeet]:
+    """Return the mines of each dancer and the feet over them; in the order of the mines of her play."""
+    whole, out = pad_of(solved), []
+    for motion, one, play in zip(motions, solved, plays, strict=True):
+        assert one.pad is not None
+        mines = mines_of(as_heard(play, one.chart.timing.at_rate(rate)), one.pad)
+        if len(solved) > 1:
+            mines += [0.0, *place_on(whole, one.chart, one.pad)]
+        out.append(_UnderFeet(mines[:, 0], feet_on_mines(motion, mines)))
+    return out
+
+
+def _with_mine_notes(motion: Motion, under: _UnderFeet) -> Motion:
+    """Return the motion with a note for the user about the mines under a foot."""
+    return replace(motion, notes=(*motion.notes, *mine_messages(under.second[under.foot >= 0])))
+
+
+def _on_mines(solved: Sequence[Solved], plays: Sequence[Play], under: Sequence[_UnderFeet]) -> tuple[OnMine, ...]:
+    """Return the mines under a foot, with columns of the pad of all dancers."""
+    found = []
+    for one, play, (_, foot) in zip(solved, plays, under, strict=True):
+        first, who = (one.chart.first_column, one.chart.player) if len(solved) > 1 else (0, 0)
+        row, column = (places[foot >= 0] for places in np.nonzero(play.rows.mines))
+        places = zip(play.rows.tick[row].tolist(), column.tolist(), foot[foot >= 0].tolist(), strict=True)
+        found += [OnMine(tick, first + c, side, who) for tick, c, side in places]
+    return tuple(found)

@@ -19,8 +19,9 @@ from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.media.encoder import Encoding, encode_segment, join
 from dancetutor_cli.film.overlay.text import font
 from dancetutor_cli.film.scene import renderer
+from dancetutor_cli.film.scene.bare_floor import EYE, FOCAL, FOLLOWED_BELOW, FULL_RED, TARGET_HEIGHT, floor_under
 from dancetutor_cli.film.scene.camera import Camera
-from dancetutor_cli.film.scene.scene import PANEL, FrameState, Scene
+from dancetutor_cli.film.scene.scene import FrameState, Scene
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.ffmpeg import EncoderError
 
@@ -30,11 +31,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.picture import Frame
 
 SIZE, FPS = (720, 720), 30
-EYE = np.array([1.5, 0.45, 3.1])  # place of the camera, from its target, metres
-LOOK = 0.9  # height of the camera's target, metres
-FOCAL, ALONG = 1.35, 0.4  # focal length in picture heights; hertz below which the camera follows
-ROOM = 2.0  # panels of floor around the dancer's path
-FAR = 10.0  # smallest distance of a point that is drawn in full red, centimetres
 NEAR_COLOUR, FAR_COLOUR = np.array([0, 158, 115]), np.array([213, 0, 0])
 INK, PAPER = (20, 20, 20), (255, 255, 255)
 
@@ -51,15 +47,6 @@ class Comparison:
     names: tuple[str, ...]
     before: Array
     after: Array
-
-
-@dataclass(frozen=True, slots=True)
-class BareFloor:
-    """A pad of tiles without arrows, as large as the dancer's path."""
-
-    panels: Array
-    arrows: Array
-    centre: tuple[float, float]
 
 
 @contextmanager
@@ -86,7 +73,7 @@ def work_folder(output: Path) -> Iterator[Path]:
         raise
 
 
-def film(path: Path, character: Character, motion: Motion, comparison: Comparison | None = None) -> int:
+def write_motion_film(path: Path, character: Character, motion: Motion, comparison: Comparison | None = None) -> int:
     """Write an .mp4 and return its number of frames. Raises FileError or UnavailableError, and then leaves no file.
 
     comparison : the input to show on the left, and the points whose distances to draw; None for the motion alone
@@ -108,12 +95,13 @@ def frames(character: Character, motion: Motion, count: int, comparison: Compari
     poses = [sample(one, times) for one in ((motion,) if comparison is None else (comparison.given, motion))]
     scene = Scene(character, floor_under(np.concatenate([root for _, root in poses])))
     draws = [renderer.create(scene, SIZE, "good", "cpu") for _ in poses]
-    slow = low_pass(poses[0][1], FPS, ALONG)
+    slow = low_pass(poses[0][1], FPS, FOLLOWED_BELOW)
     nobody = np.zeros(scene.panels)
     joints = [joint_matrices(character.skeleton, *pose) for pose in poses]
     for k in range(count):
         x, z = float(slow[k, 0]), float(slow[k, 2])
-        camera = Camera((x + float(EYE[0]), LOOK + float(EYE[1]), z + float(EYE[2])), (x, LOOK, z), FOCAL)
+        target = (x, TARGET_HEIGHT, z)
+        camera = Camera((x + float(EYE[0]), TARGET_HEIGHT + float(EYE[1]), z + float(EYE[2])), target, FOCAL)
         shown = [
             draw.frame(FrameState(own[k], camera, nobody, nobody.astype(np.int64)))
             for draw, own in zip(draws, joints, strict=True)
@@ -131,7 +119,7 @@ def _compared(shown: list[Frame], camera: Camera, comparison: Comparison, keys: 
     apart = 100.0 * np.linalg.norm(after - before, axis=1)
     here, there = (camera.project(points, SIZE)[:, :2] + [SIZE[0], 0] for points in (before, after))
     for k in np.argsort(apart).tolist():
-        share = min(float(apart[k]) / FAR, 1.0)
+        share = min(float(apart[k]) / FULL_RED, 1.0)
         colour = tuple(int(c) for c in NEAR_COLOUR + share * (FAR_COLOUR - NEAR_COLOUR))
         (x, y), radius = there[k], 3.0 + 5.0 * share
         draw.line((*map(float, here[k]), float(x), float(y)), fill=colour, width=3)
@@ -141,10 +129,3 @@ def _compared(shown: list[Frame], camera: Camera, comparison: Comparison, keys: 
     for x, text in ((16, "input"), (SIZE[0] + 16, words)):
         draw.text((x, 12), text, fill=INK, font=letters, stroke_width=2, stroke_fill=PAPER)
     return np.asarray(image)
-
-
-def floor_under(root: Array) -> BareFloor:
-    """Return a floor around the path (f, 3) of one or more roots."""
-    low, high = root[:, [0, 2]].min(axis=0) / PANEL, root[:, [0, 2]].max(axis=0) / PANEL
-    corners = np.array([[-high[0] - ROOM, low[1] - ROOM], [-low[0] + ROOM, high[1] + ROOM]])
-    return BareFloor(np.round(corners), np.zeros((2, 2)), (0.0, 0.0))

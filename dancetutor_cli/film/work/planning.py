@@ -19,8 +19,8 @@ from dancetutor_cli.film.media.sound import SoundPlan, clicks_of
 from dancetutor_cli.film.media.subtitles import cues_of, subtitle_words
 from dancetutor_cli.film.notes import beat_lines, note_track, presses_of
 from dancetutor_cli.film.overlay.callouts import CalloutSubject, CallStyle, callouts_of
-from dancetutor_cli.film.overlay.captions import SongShape
 from dancetutor_cli.film.overlay.diagram import step_rows
+from dancetutor_cli.film.overlay.footer import SongShape
 from dancetutor_cli.film.overlay.header import title_warnings, words_of
 from dancetutor_cli.film.overlay.sprites import callout_words, highway_style
 from dancetutor_cli.film.plan import FilmPlan, faces_viewer
@@ -28,7 +28,7 @@ from dancetutor_cli.film.scene.scene import Scene
 from dancetutor_cli.film.scene.visibility import feet_hidden
 from dancetutor_cli.film.scroll import ScrollSegments, SpeedSegments, reading_bpm, segments_of, speeds_of
 from dancetutor_cli.film.words import PanelNames
-from dancetutor_cli.film.work.film_dance import FilmDance, film_dance, shown_notes
+from dancetutor_cli.film.work.film_dance import FilmDance, bake_film_dance, shown_notes
 from dancetutor_cli.film.work.request import FilmRequest, FilmSubject
 from dancetutor_cli.run.languages import load_language
 
@@ -59,7 +59,7 @@ class PreparedFilm:
 def prepare(request: FilmRequest, subject: FilmSubject) -> PreparedFilm:
     """Do all slow work before the first frame. DancetutorError describes an error in one line."""
     song, chart, clock = subject.song, subject.chart, subject.clock
-    dance = film_dance(request, subject)
+    dance = bake_film_dance(request, subject)
     play, pad = dance.play, dance.pad
     scrolls, speeds = segments_of(song, chart), speeds_of(song, chart)
     whole_track = note_track(chart, play, scrolls, dance.on_mines)
@@ -101,7 +101,7 @@ def _sound(request: FilmRequest, subject: FilmSubject, presses: Presses) -> Soun
     if request.mute or request.background:
         return None
     passes = subject.clock.passes
-    fade = passes[-1].rest / passes[-1].rate if request.section else 1.0
+    fade = passes[-1].rest / passes[-1].rate if subject.is_section else 1.0
     practice = replace(request.practice, claps=request.practice.claps or subject.music is None)
     clicks = clicks_of(practice, passes[0], subject.chart.timing, presses.start)
     return SoundPlan(subject.music, request.sync, clicks, fade)
@@ -143,10 +143,10 @@ def _callouts(dance: FilmDance, style: CallStyle, scrolls: ScrollSegments) -> tu
 
 
 def _about(one: Solved) -> CalloutSubject:
-    return CalloutSubject(one.chart, one.pad, partial(_findings, one))
+    return CalloutSubject(one.chart, one.pad, partial(_findings_of, one))
 
 
-def _findings(one: Solved) -> tuple[Finding, ...]:
+def _findings_of(one: Solved) -> tuple[Finding, ...]:
     from dancetutor_cli.lint.check import findings_of
     from dancetutor_cli.lint.subject import subject_of
 

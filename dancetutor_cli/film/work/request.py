@@ -56,13 +56,13 @@ class FilmRequest:
 class FilmSubject:
     """The subject of a film, read and checked.
 
-    music : the song's file, None for a film without music; section : whether the user asked for a part of the song
+    music : the song's file, None for a film without music; is_section : whether it shows only a part of the song
     """
 
     choice: ChartChoice
     clock: Clock
     music: Path | None
-    section: bool
+    is_section: bool
     warnings: tuple[str, ...]
 
     @property
@@ -78,7 +78,7 @@ class FilmSubject:
     @property
     def chart_seconds(self) -> float:
         """The length of the chart as written, with empty measures, seconds; 0 for a film of a section."""
-        if self.section:
+        if self.is_section:
             return 0.0
         end = np.array([len(self.chart.measures.line) * TICKS_PER_MEASURE], dtype=np.int64)
         return float(self.chart.timing.seconds(end)[0])
@@ -123,11 +123,11 @@ def film_key(request: FilmRequest, subject: FilmSubject, encoding: Encoding) -> 
     # and the content of the chart file.
     dance = replace(request.dance, selection=Selection(index=part.index, player=player), preset=None)
     music = None if subject.music is None else file_hash(subject.music)
-    words = feet_fingerprint(request.path), _findings(request.path), music
-    return fingerprint(replace(request, dance=dance), choice.presets, encoding, words, program_hash())
+    inputs = feet_fingerprint(request.path), _settings_fingerprint(request.path), music
+    return fingerprint(replace(request, dance=dance), choice.presets, encoding, inputs, program_hash())
 
 
-def _findings(path: Path) -> str:
+def _settings_fingerprint(path: Path) -> str:
     """Return a fingerprint of the settings for findings: dancetutor.yaml and the files that it extends; "" without one.
 
     The settings of the program itself are part of its hash.

@@ -15,7 +15,7 @@ from dancetutor_cli.film.clock import Pass
 from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import WIDE_PAD, FilmLook, load_layout
 from dancetutor_cli.film.overlay import text
-from dancetutor_cli.film.overlay.captions import Legend, LegendWords
+from dancetutor_cli.film.overlay.footer import Legend, LegendWords
 from dancetutor_cli.film.overlay.header import Header, Words, WordsRoom
 from dancetutor_cli.film.overlay.sprites import WordStyle, highway_style
 from dancetutor_cli.film.overlay.text import Typeface, clean, fit_text, in_lines, parts_of, system_fonts, wrap_words

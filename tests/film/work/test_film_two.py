@@ -22,7 +22,7 @@ from dancetutor_cli.film.overlay.diagram import step_rows
 from dancetutor_cli.film.scene.scene import PANEL, FrameState
 from dancetutor_cli.film.scene.shared import HEEL_X, STRENGTH, feet_on_floor
 from dancetutor_cli.film.work import planning
-from dancetutor_cli.film.work.film_dance import FilmDance, film_dance
+from dancetutor_cli.film.work.film_dance import FilmDance, bake_film_dance
 from dancetutor_cli.film.work.planning import _dancers, prepare
 from dancetutor_cli.film.work.request import FilmRequest, look_up
 from dancetutor_cli.run.errors import UsageError
@@ -44,7 +44,7 @@ def request_for(folder: Path, kind: str, **more: object) -> FilmRequest:
 @pytest.fixture(scope="module", params=list(CHARTS))
 def dance(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> FilmDance:
     wanted = request_for(tmp_path_factory.mktemp("two"), request.param)
-    return film_dance(wanted, look_up(wanted))
+    return bake_film_dance(wanted, look_up(wanted))
 
 
 def test_each_foot_stands_on_the_panel_of_its_note(dance: FilmDance) -> None:
@@ -177,11 +177,11 @@ def test_a_character_without_such_colours_is_tinted() -> None:
 def test_options_for_one_dancer_are_reported(tmp_path: Path, option: dict[str, object]) -> None:
     wanted = request_for(tmp_path, "dance-couple", **option)
     with pytest.raises(UsageError, match="for two: choose with --player 1 or 2"):
-        film_dance(wanted, look_up(wanted))
+        bake_film_dance(wanted, look_up(wanted))
 
 
 def test_one_of_them_is_filmed_alone(tmp_path: Path) -> None:
     wanted = request_for(tmp_path, "dance-couple")
     wanted = film_request(wanted.path, Selection(player=2), wanted.look, section=wanted.section, mute=True)
-    dance = film_dance(wanted, look_up(wanted))
+    dance = bake_film_dance(wanted, look_up(wanted))
     assert len(dance.solved) == 1 == len(dance.motions[1.0]) and dance.pad.steps_type == "dance-single"

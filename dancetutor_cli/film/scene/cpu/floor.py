@@ -37,7 +37,7 @@ LIT = 0.80  # share of its light that a lit panel keeps in the deepest shadow, w
 
 
 @njit(cache=True, inline="always")
-def smooth(low: float, high: float, x: float) -> float:  # pragma: no cover
+def smoothstep(low: float, high: float, x: float) -> float:  # pragma: no cover
     """Return 0 below `low`, 1 above `high`, and a cubic between them."""
     t = min(1.0, max(0.0, (x - low) / (high - low)))
     return t * t * (3.0 - 2.0 * t)
@@ -140,7 +140,7 @@ def _left_of_shadow(x: float, z: float, middles: Any, far: float) -> float:  # p
     """Return the share of the shadow, 0..1, that is left at a place of the floor."""
     first = (x - middles[0, 0]) ** 2 + (z - middles[0, 1]) ** 2
     second = (x - middles[1, 0]) ** 2 + (z - middles[1, 1]) ** 2
-    return 1.0 - (1.0 - far) * smooth(SHADOW_FADE[0], SHADOW_FADE[1], np.sqrt(min(first, second)))
+    return 1.0 - (1.0 - far) * smoothstep(SHADOW_FADE[0], SHADOW_FADE[1], np.sqrt(min(first, second)))
 
 
 class Live(NamedTuple):
@@ -259,11 +259,11 @@ def draw_ground(out: Any, box: Any, shift: int, standing: Any, shade: Any, live:
                         near = feet[f, NEARNESS]
                         reach = numbers[CONTACT_SOFT] * (1.6 - 0.6 * near)
                         if d < reach:
-                            keep *= 1.0 - numbers[CONTACT_DARK] * near * (1.0 - smooth(0.0, reach, d))
+                            keep *= 1.0 - numbers[CONTACT_DARK] * near * (1.0 - smoothstep(0.0, reach, d))
                         if d > OUTSIDE + foot[row, c]:
                             continue
                         soft = 0.5 * foot[row, c]
-                        planted = smooth(PLANTED[0], PLANTED[1], near)
+                        planted = smoothstep(PLANTED[0], PLANTED[1], near)
                         wide, off = RING[0] + RING[1] * planted, RING[2] + RING[3] * planted
                         band = min(1.0, max(0.0, (wide - abs(d - off)) / (2.0 * soft) + 0.5))
                         band *= feet[f, STRENGTH]

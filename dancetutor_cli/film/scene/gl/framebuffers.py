@@ -67,7 +67,7 @@ def refill(number: int, image: NDArray[Any], level: int = 0) -> None:
     )
 
 
-def smooth(number: int) -> None:
+def interpolate(number: int) -> None:
     """Allow interpolated reads between the texels of a texture."""
     GL.glBindTexture(GL.GL_TEXTURE_2D, number)
     _parameters(GL.GL_LINEAR, GL.GL_LINEAR, GL.GL_CLAMP_TO_EDGE)

@@ -140,7 +140,7 @@ def scissor(box: NDArray[Any]) -> None:
     GL.glScissor(x0, y0, max(x1 - x0, 0), max(y1 - y0, 0))
 
 
-def cover(program: Program) -> None:
+def fill_scissor(program: Program) -> None:
     """Run the program's fragment shader for every pixel inside the scissor box."""
     GL.glBindVertexArray(program.empty_array)
     GL.glDisable(GL.GL_CULL_FACE)

@@ -26,12 +26,12 @@ from dancetutor_cli.film.scene.gl.framebuffers import (
     StandingTarget,
     Target,
     foot_tiles,
+    interpolate,
     is_lit,
     pyramid,
     rectangles,
     refill,
     shaded_tiles,
-    smooth,
     texture,
 )
 from dancetutor_cli.film.scene.gl.programs import (
@@ -39,7 +39,7 @@ from dancetutor_cli.film.scene.gl.programs import (
     ProgramCache,
     SkinnedPrimitive,
     bind_texture,
-    cover,
+    fill_scissor,
     scissor,
     set_state,
 )
@@ -131,7 +131,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         fine = (self._fine * self._size[0], self._fine * self._size[1])
         self._drawn = Target(fine, self._samples, depth=True)
         self._whole = Target(fine) if self._samples else self._drawn
-        smooth(self._whole.texture)
+        interpolate(self._whole.texture)
         self._picture = Target(self._size)
         self._standing: tuple[Camera, StandingTarget] | None = None
         self._patches = Patches()
@@ -305,7 +305,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         over: Program = self._program_cache.program("screen.vert", "over.frag")
         over.use(drawn=_FIRST_UNIT, size=np.array(self._size))
         bind_texture(_FIRST_UNIT, self._whole.texture)
-        cover(over)
+        fill_scissor(over)
         GL.glDisable(GL.GL_BLEND)
 
     def _read(self) -> NDArray[np.uint8]:

@@ -1,4 +1,4 @@
-"""The fixed words of the picture except the song's: the legend, and the strip with density, position and time."""
+"""What stands at the lower edge of most layouts: the legend, and the strip with density, position and time."""
 
 from __future__ import annotations
 
@@ -11,42 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.film.layout import PixelBox
-from dancetutor_cli.film.overlay import blit as shapes
-from dancetutor_cli.film.overlay import sprites
-from dancetutor_cli.film.overlay.blit import Box, Sprite, blit, rectangle
+from dancetutor_cli.film.overlay import blit, sprites
+from dancetutor_cli.film.overlay.blit import Box, Sprite
 from dancetutor_cli.film.overlay.sprites import HighwayStyle
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.run.schema import RGB
-
-WHITE = (255, 255, 255)
-SOFT = (196, 202, 222)
-INK = (12, 13, 22)
-
-
-def box_of(sprite: Sprite, x: float, y: float) -> Box:
-    """Return left, top, right and bottom of a sprite whose top left corner is at (x, y)."""
-    return x, y, x + sprite.shape[1], y + sprite.shape[0]
-
-
-def plate(lines: Sequence[str], size: float, colour: tuple[int, int, int], face: Typeface) -> Sprite:
-    """Draw lines of dark words on a coloured plate with round ends."""
-    words = [face.sprite(line, size, INK, weight=size / 62) for line in lines]
-    one, step = max(8, round(1.55 * size)), round(1.2 * size)
-    height = one + step * (len(lines) - 1)
-    width = max(max(line.shape[1] for line in words) + one // 2 + 2, one)
-    out = lozenge(height, width, one / 2 - 1, colour)
-    for number, line in enumerate(words):
-        sprites.centre(out[number * step : number * step + one], line)
-    return out
-
-
-def lozenge(height: int, width: int, radius: float, colour: tuple[int, int, int], opacity: float = 1) -> Sprite:
-    """Draw a box with round corners."""
-    painter = shapes.Painter(height, width)
-    d = shapes.rounded_box(painter.x, painter.y, width / 2 - 1, height / 2 - 1, radius)
-    painter.paint(shapes.cover(d), colour, opacity)
-    return painter.sprite()
 
 
 class LegendWords(NamedTuple):
@@ -79,39 +49,40 @@ class Legend:
         right = float(box[0])
         for row, (mark, name) in enumerate(shown):
             middle = top + (row + 0.5) * step
-            text = face.sprite(name, 16 * scale, WHITE, weight=0.2 * scale)
+            text = face.sprite(name, 16 * scale, sprites.WHITE, weight=0.2 * scale)
             x = box[0] + mark.shape[1] + 5 * scale
             lines += [(mark, box[0], middle - mark.shape[0] / 2), (text, x, middle - text.shape[0] / 2)]
             right = max(right, x + text.shape[1])
         if note:
-            text = face.sprite(note, 16 * scale, WHITE, weight=0.2 * scale)
+            text = face.sprite(note, 16 * scale, sprites.WHITE, weight=0.2 * scale)
             lines.append((text, box[0], top + height - 0.5 * step - text.shape[0] / 2))
             right = max(right, float(box[0] + text.shape[1]))
-        plate = lozenge(round(height + 1.2 * edge), round(right - box[0] + 2 * edge), 8 * scale, INK, opacity=0.62)
+        around = round(height + 1.2 * edge), round(right - box[0] + 2 * edge)
+        plate = sprites.lozenge(*around, 8 * scale, sprites.INK, opacity=0.62)
         self.lines = [(plate, box[0] - edge, top - 0.6 * edge), *lines]
 
     @property
     def boxes(self) -> list[Box]:
         """The box of the plate: left, top, right, bottom."""
-        return [box_of(*self.lines[0])]
+        return [sprites.box_of(*self.lines[0])]
 
     def draw(self, frame: Frame, opacity: float = 1.0) -> None:
         """Draw the legend over the picture."""
         for sprite, x, y in self.lines:
-            blit(frame, sprite, x, round(y), opacity)
+            blit.blit(frame, sprite, x, round(y), opacity)
 
 
 @dataclass(frozen=True, slots=True)
 class SongShape:
     """The whole song for the strip. steps : float64 (n,), seconds of the steps, sorted
 
-    start, end : the range of the strip, seconds; section : the rendered part, (start, end) seconds
+    start, end : the range of the strip, seconds; film : the part that the film shows, (start, end) seconds
     """
 
     steps: NDArray[np.float64]
     start: float
     end: float
-    section: tuple[float, float]
+    film: tuple[float, float]
 
 
 def strip_ground(picture: Frame, scale: float) -> None:
@@ -141,18 +112,18 @@ class ProgressStrip:
         a, b = self.graph[0] - left, self.graph[1] - left
         if b <= a:
             return picture
-        heights = density(self.song, b - a, max(2.0, 2.0 * self.scale))
+        heights = step_density(self.song, b - a, max(2.0, 2.0 * self.scale))
         floor = bottom - top - 7 * self.scale
         room = floor - 7 * self.scale
         colour = style.accent if bright else (92, 98, 128)
         for x, height in enumerate(heights):
             base = 1.5 * self.scale
-            rectangle(picture, (a + x, floor - base - (room - base) * height, a + x + 1, floor), colour, 0.88)
-        for edge in self.song.section:
+            blit.rectangle(picture, (a + x, floor - base - (room - base) * height, a + x + 1, floor), colour, 0.88)
+        for edge in self.song.film:
             at = a + self._position(edge) * (b - a)
             if a < at < b:
                 box = (at - self.scale, 0, at + self.scale, bottom - top)
-                rectangle(picture, box, style.difficulty["Medium"], 0.8)
+                blit.rectangle(picture, box, style.difficulty["Medium"], 0.8)
         return picture
 
     def _position(self, second: float) -> float:
@@ -167,15 +138,15 @@ class ProgressStrip:
         frame[top:bottom, left:right] = self.ahead
         frame[top:bottom, left : left + split] = self.played[:, :split]
         here = (x - 1.2 * self.scale, top + 4 * self.scale, x + 1.2 * self.scale, bottom - 4 * self.scale)
-        rectangle(frame, here, WHITE)
+        blit.rectangle(frame, here, sprites.WHITE)
         words = self._sprite(f"{clock_text(second)} / {clock_text(self.song.end)}")
-        blit(frame, words, left + 14 * self.scale, round((top + bottom - words.shape[0]) / 2))
+        blit.blit(frame, words, left + 14 * self.scale, round((top + bottom - words.shape[0]) / 2))
 
     def _time_sprite(self, text: str) -> Sprite:
-        return self.face.sprite(text, self.text, WHITE, weight=0.2 * self.scale)
+        return self.face.sprite(text, self.text, sprites.WHITE, weight=0.2 * self.scale)
 
 
-def density(song: SongShape, bins: int, smooth: float) -> NDArray[np.float64]:
+def step_density(song: SongShape, bins: int, smooth: float) -> NDArray[np.float64]:
     """Return the density of steps along the song, `bins` values relative to the highest.
 
     smooth : minimum width of the smoothing, bins
