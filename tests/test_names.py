@@ -24,6 +24,12 @@ RIDDLES |= {"lack", "lacks", "good", "tall", "some", "blame", "lately", "trodden
 IRREGULAR = {"drawn", "flown", "grown", "heard", "held", "kept", "made", "risen", "shown", "swung", "written"}
 # Participles that are nouns of the field (a direction, what a rule reports) or also the adjective of a side.
 NOUNS = {"facing", "finding", "heading", "left"}
+# Functions of one name in a room: modules with one interface, of which the caller chooses one.
+INTERFACES = {
+    "commands: command": "the click command of each module, which the group finds by its name",
+    "markers: write": "each marker style writes markers, and `annotate` chooses the style",
+    "markers: strip": "each marker style removes its markers",
+}
 CONTAINERS = {"None", "tuple", "list", "dict", "Sequence", "Iterator", "Iterable", "Mapping", "bool", "int", "float"}
 
 
@@ -79,6 +85,33 @@ def test_public_classes_have_names_of_their_own() -> None:
                 found[node.name].append(path.relative_to(PACKAGE).as_posix())
     assert len(found) > 300
     assert {name: paths for name, paths in found.items() if len(paths) > 1} == {}
+
+
+def same_names(room: Path) -> dict[str, list[str]]:
+    """The public functions of a room that share a name: name -> modules that define it."""
+    found = defaultdict(list)
+    for path in sorted(room.rglob("*.py")):
+        for name, _ in functions(ast.parse(path.read_text(encoding="utf-8")).body):
+            if "." not in name:
+                found[name].append(path.relative_to(room.parent).as_posix())
+    return {name: paths for name, paths in found.items() if len(paths) > 1}
+
+
+def test_public_functions_of_a_room_have_names_of_their_own() -> None:
+    """Methods share names where classes have one interface; functions do so only for the reasons in `INTERFACES`."""
+    rooms = [path.parent for path in sorted(PACKAGE.glob("*/__init__.py"))]
+    found = {f"{room.name}: {name}": paths for room in rooms for name, paths in same_names(room).items()}
+    assert len(rooms) == 12
+    assert {name: paths for name, paths in found.items() if name not in INTERFACES} == {}
+    assert found.keys() == INTERFACES.keys(), "what no longer shares a name leaves the list"
+
+
+def test_functions_of_one_name_in_a_room_are_found(tmp_path: Path) -> None:
+    for name, text in (("a.py", "def cut(): ..."), ("b/c.py", "def cut(): ...\ndef own(): ...\ndef _own(): ...")):
+        path = tmp_path / "room" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+    assert same_names(tmp_path / "room") == {"cut": ["room/a.py", "room/b/c.py"]}
 
 
 def test_no_definition_is_called_by_a_participle_or_a_riddle() -> None:

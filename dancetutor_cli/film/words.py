@@ -1,4 +1,10 @@
-"""The words for moves in films, by language: names, which callouts and subtitles share, and the phrases of calls."""
+"""The words for moves in films, by language: names, which callouts and subtitles share, and the phrases of calls.
+
+`configs/languages` has the words of all moves. `configs/highway.yaml` names the moves that are called out
+(`overlay.sprites.callout_words`), `configs/subtitles.yaml` those of subtitles (`media.subtitles.subtitle_words`).
+`overlay.callouts` and `media.subtitles` fill in limbs and panels with the functions below; `overlay.announce` and
+`overlay.highway` draw the calls.
+"""
 
 from __future__ import annotations
 
