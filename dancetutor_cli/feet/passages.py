@@ -85,7 +85,7 @@ def passage_settings() -> PassageSettings:
     return load(config_path("passages.yaml"), PassageSettings)
 
 
-def hardest(play: Play, timing: Timing, settings: PassageSettings | None = None) -> tuple[Passage, ...]:
+def hardest_passages(play: Play, timing: Timing, settings: PassageSettings | None = None) -> tuple[Passage, ...]:
     """Return the hardest passages, the hardest first; passages do not overlap. A chart without steps has no passages.
 
     A passage begins at the start of a measure and is `measures` of the settings long, or as long as a shorter chart.
@@ -129,24 +129,24 @@ def _visible_steps(play: Play) -> NDArray[np.bool_]:
     return np.asarray((steps != StepKind.NONE) & (steps != StepKind.ROLL_TAP))
 
 
-def _marks(play: Play, rows: NDArray[np.int64], names: tuple[str, ...]) -> NDArray[np.bool_]:
+def _has_move(play: Play, rows: NDArray[np.int64], names: tuple[str, ...]) -> NDArray[np.bool_]:
     """Whether each of the rows has one of these moves."""
     return np.array([any(name in play.moves[row] for name in names) for row in rows.tolist()], dtype=bool)
 
 
-def _begins(marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _is_first(marked: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Whether each row is the first of a run of marked rows; feet that stay crossed count as one crossover."""
     return np.asarray(marked & ~np.concatenate([[False], marked[:-1]]))
 
 
-def _turned(play: Play, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+def _turns(play: Play, rows: NDArray[np.int64]) -> NDArray[np.float64]:
     """Return the angles (n,) by which the dancer turns between the row before and each row, degrees."""
     facing = play.facing[rows]
     change = np.abs(np.diff(facing, prepend=facing[:1]))
     return np.asarray(np.minimum(change, 360.0 - np.minimum(change, 360.0)))
 
 
-def _unsure(play: Play, rows: NDArray[np.int64], close: float) -> NDArray[np.bool_]:
+def _is_unsure(play: Play, rows: NDArray[np.int64], close: float) -> NDArray[np.bool_]:
     """Whether each row can be stepped with other limbs at hardly more cost."""
     if play.margin is None:
         return np.zeros(len(rows), dtype=bool)
@@ -167,11 +167,11 @@ def _weights(
         (settings.doublestep, ("doublestep",)),
         (settings.jack, ("jack",)),
     ):
-        out += share * _marks(play, rows, names)
-    out += settings.crossover * _begins(_marks(play, rows, _CROSSED))
-    out += settings.jump * ((stepped[rows].sum(axis=1) > 1) & ~_marks(play, rows, ("bracket",)))
-    out += settings.turn * _turned(play, rows) / 90.0
-    return np.asarray(out + settings.unsure * _unsure(play, rows, settings.close))
+        out += share * _has_move(play, rows, names)
+    out += settings.crossover * _is_first(_has_move(play, rows, _CROSSED))
+    out += settings.jump * ((stepped[rows].sum(axis=1) > 1) & ~_has_move(play, rows, ("bracket",)))
+    out += settings.turn * _turns(play, rows) / 90.0
+    return np.asarray(out + settings.unsure * _is_unsure(play, rows, settings.close))
 
 
 def _counts(
@@ -180,11 +180,11 @@ def _counts(
     """Return the counts of some rows, as in `Passage`; stepped : (rows, columns), the visible steps"""
 
     def count(*names: str) -> int:
-        return int(_marks(play, rows, names).sum())
+        return int(_has_move(play, rows, names).sum())
 
-    crossing = rows[_begins(_marks(play, rows, _CROSSED))]
+    crossing = rows[_is_first(_has_move(play, rows, _CROSSED))]
     limbs = play.limb[crossing]
-    two = (stepped.sum(axis=1) > 1) & ~_marks(play, rows, ("bracket",))
+    two = (stepped.sum(axis=1) > 1) & ~_has_move(play, rows, ("bracket",))
     return {
         "crossovers": tuple(int((limbs == foot).any(axis=1).sum()) for foot in (Limb.LEFT_FOOT, Limb.RIGHT_FOOT)),
         "turn": float(np.abs(play.facing[rows]).max(initial=0.0)),
@@ -196,5 +196,5 @@ def _counts(
         "jumps": int(two.sum()),
         "hands": count("hand"),
         "stream": count("stream"),
-        "unsure": int(_unsure(play, rows, settings.close).sum()),
+        "unsure": int(_is_unsure(play, rows, settings.close).sum()),
     }

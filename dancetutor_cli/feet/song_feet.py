@@ -73,7 +73,7 @@ class SettingsFeet:
     problems: tuple[FeetProblem, ...] = ()
 
 
-def read_settings(song: Song, chart: Chart, path: Path | None) -> SettingsFeet:
+def read_settings_feet(song: Song, chart: Chart, path: Path | None) -> SettingsFeet:
     """Read the feet of a chart from a dancetutor.yaml; without a path, there are none. Raises FileError."""
     if path is None:
         return SettingsFeet()
@@ -149,8 +149,8 @@ class SongFeet:
         if self._editor is None and self._settings is None and not has_pins(song.data, in_file):
             return Overrides.none(), Ignores(), ()
         pins, problems = pinned_cells(song, in_file)
-        editor = ChartData() if self._editor is None else read_sme(song, whole)
-        settings = read_settings(song, whole, self._settings)
+        editor = EditorFeet() if self._editor is None else read_editor_feet(song, whole)
+        settings = read_settings_feet(song, whole, self._settings)
         given = (*settings.cells, *editor.cells, *pins)
         overrides = {
             (s.tick, s.column): s for s in (given if chart.written is None else _of_player(chart, given))
@@ -193,7 +193,7 @@ _CODES = {
 
 
 @dataclass(frozen=True, slots=True)
-class ChartData:
+class EditorFeet:
     """The contents of `data.sme` for one chart. ignores : {tick: codes}"""
 
     cells: tuple[CellOverride, ...] = ()
@@ -201,18 +201,18 @@ class ChartData:
     problems: tuple[FeetProblem, ...] = ()
 
 
-def read_sme(song: Song, chart: Chart) -> ChartData:
+def read_editor_feet(song: Song, chart: Chart) -> EditorFeet:
     """Read the entry of a chart from the `data.sme` in the song's folder; it is empty if there is no file.
 
     Never raises.
     """
     path = editor_file(song.path)
     if path is None:
-        return ChartData()
+        return EditorFeet()
     try:
         raw = read_bytes(path, CHART_LIMIT)
     except MissingFileError:
-        return ChartData()
+        return EditorFeet()
     except FileError as error:
         return _unreadable(f"{path.name} {error.message}")
     stems = song_stems(path.parent)
@@ -223,7 +223,7 @@ def read_sme(song: Song, chart: Chart) -> ChartData:
     except FileError as error:
         return _unreadable(f"{path.name} {error.message}; it is not used")
     entry = chart_entry(data, chart, place_in_type(song, chart))
-    return _chart_data(entry, chart, _our_overrides(data, chart, place_in_type(song, chart)))
+    return _editor_feet(entry, chart, _our_overrides(data, chart, place_in_type(song, chart)))
 
 
 def editor_file(song: Path) -> Path | None:
@@ -269,7 +269,7 @@ def tick_of(beat: float) -> int:
     return round(beat * TICKS_PER_BEAT)
 
 
-def _chart_data(entry: Any, chart: Chart, ours: set[tuple[float, int, object]]) -> ChartData:
+def _editor_feet(entry: Any, chart: Chart, ours: set[tuple[float, int, object]]) -> EditorFeet:
     notes = set(zip(chart.notes.tick.tolist(), chart.notes.column.tolist(), strict=True))
     lines = dict(zip(chart.notes.tick.tolist(), chart.notes.line.tolist(), strict=True))
     overrides: list[CellOverride] = []
@@ -284,7 +284,7 @@ def _chart_data(entry: Any, chart: Chart, ours: set[tuple[float, int, object]]) 
             continue
         limb, part = FEET[value]
         overrides.append(CellOverride(tick, column, limb, part, FILE_NAME, lines[tick], 1))
-    return ChartData(tuple(_with_parts(overrides)), dict(_ignores(entry)), tuple(problems))
+    return EditorFeet(tuple(_with_parts(overrides)), dict(_ignores(entry)), tuple(problems))
 
 
 def _with_parts(overrides: list[CellOverride]) -> Iterator[CellOverride]:
@@ -311,5 +311,5 @@ def _ignores(entry: Any) -> Iterator[tuple[int, frozenset[str]]]:
             yield tick, frozenset(_CODES[name] for name in names if isinstance(name, str) and name in _CODES)
 
 
-def _unreadable(text: str) -> ChartData:
-    return ChartData(problems=(FeetProblem("sme-unreadable", text),))
+def _unreadable(text: str) -> EditorFeet:
+    return EditorFeet(problems=(FeetProblem("sme-unreadable", text),))

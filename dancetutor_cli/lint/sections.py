@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dancetutor_cli.feet.passages import hardest
+from dancetutor_cli.feet.passages import hardest_passages
 from dancetutor_cli.run.errors import UsageError, plural
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def part_of(text: str, song: Song, chart: Chart, preset: Preset, end: float) -> 
     Parameters
     ----------
     text : START:END in seconds, beats or measures (`parse_section`); RULE:N, four measures around the N-th finding; or
-        hardest:N, the N-th hardest passage (`hardest`)
+        hardest:N, the N-th hardest passage (`hardest_passages`)
     preset : the cost preset with which the feet are found
     end : second at which the chart ends; no part continues after it, and UsageError if a part begins after it
     """
@@ -55,7 +55,7 @@ def _hardest(song: Song, chart: Chart, preset: Preset, number: int) -> tuple[flo
     from dancetutor_cli.lint.subject import solved_chart
 
     play = solved_chart(song, chart, preset).play
-    found = () if play is None else hardest(play, chart.timing)
+    found = () if play is None else hardest_passages(play, chart.timing)
     if not 1 <= number <= len(found):
         most = len(found)
         has = f"only {plural(most, 'hard passage')}: write {_numbered('hardest', most)}" if most else "no hard passage"

@@ -18,7 +18,7 @@ from dancetutor_cli.dance.performance import pad_of, perform, piece_runner, play
 from dancetutor_cli.dance.request import check_request, read_chart
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.feet.pads import load_pad
-from dancetutor_cli.feet.passages import hardest
+from dancetutor_cli.feet.passages import hardest_passages
 from dancetutor_cli.feet.play_json import read_play
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solved import solve_song
@@ -269,7 +269,7 @@ def _passages(solved: tuple[Solved, ...]) -> list[dict[str, Any]]:
     """Return the hardest passages, the hardest first; in a chart for two, each with its player."""
     from dancetutor_cli.page.facts import passage_object, without_repeats
 
-    pairs = [(found, one.chart) for one in solved if one.play for found in hardest(one.play, one.chart.timing)]
+    pairs = [(found, one.chart) for one in solved if one.play for found in hardest_passages(one.play, one.chart.timing)]
     if len(solved) == 1:
         return without_repeats([passage_object(passage) for passage, _ in pairs])
     pairs.sort(key=lambda one: -one[0].score)

@@ -10,14 +10,14 @@ from play_rows import letters, pad_of, rows_of
 
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.preset import Preset, load_preset
-from dancetutor_cli.feet.solver.alternatives import Blame, doublestep_causes
+from dancetutor_cli.feet.solver.alternatives import DoublestepCause, doublestep_causes
 from dancetutor_cli.feet.solver.solve import solve_rows
 
 ITG, THESIS = load_preset("itg"), load_preset("thesis")
 SINGLE = pad_of("dance-single")
 
 
-def blamed(picture: str, gap: int = 24, preset: Preset = ITG) -> tuple[Play, tuple[Blame, ...]]:
+def blamed(picture: str, gap: int = 24, preset: Preset = ITG) -> tuple[Play, tuple[DoublestepCause, ...]]:
     """The play of a picture at 150 beats a minute, and the causes of its doublesteps."""
     found = solve_rows(rows_of(picture, gap, 150.0), SINGLE, preset)
     return found, doublestep_causes(found, SINGLE, preset)
@@ -27,13 +27,13 @@ def blamed(picture: str, gap: int = 24, preset: Preset = ITG) -> tuple[Play, tup
 def test_a_hold_forces_the_other_foot(preset: Preset) -> None:
     found, causes = blamed("2... ...1 ..1. .1.. 3... 1...", preset=preset)
     assert letters(found).startswith("L... ...R ..R. .R..")
-    assert causes == (Blame(2, True, "hold", 0, 0), Blame(3, True, "hold", 0, 0))
+    assert causes == (DoublestepCause(2, True, "hold", 0, 0), DoublestepCause(3, True, "hold", 0, 0))
 
 
 def test_of_several_holds_the_one_that_is_held_is_named() -> None:
     found, causes = blamed("2... 3... ...2 .1.. ..1. ...3")
     assert letters(found).split()[-2:] == [".L..", "..L."]
-    assert [one for one in causes if one.row == 3] == [Blame(3, True, "hold", 1, 3)]
+    assert [one for one in causes if one.row == 3] == [DoublestepCause(3, True, "hold", 1, 3)]
 
 
 def test_a_roll_forces_too() -> None:
@@ -45,7 +45,7 @@ def test_a_jump_decides_who_comes_next() -> None:
     """After the jump the left foot starts a run that turns around; without it the right one would."""
     found, causes = blamed("1.M1 1... .1.. ...1 1... .1..", 48)
     assert "doublestep" in found.moves[4], letters(found)
-    assert causes == (Blame(4, False, "jump", 0, 0),)
+    assert causes == (DoublestepCause(4, False, "jump", 0, 0),)
 
 
 @pytest.mark.parametrize(
@@ -60,7 +60,7 @@ def test_a_mine_makes_a_foot_go_again(picture: str, gap: int, row: int, mine: tu
     if "doublestep" not in found.moves[row]:
         pytest.fail(letters(found))
     (cause,) = [one for one in causes if one.row == row]
-    assert cause == Blame(row, False, "mine", *mine)
+    assert cause == DoublestepCause(row, False, "mine", *mine)
     mines = found.rows.mines.copy()
     mines[mine] = False
     without = solve_rows(replace(found.rows, mines=mines), SINGLE, ITG)

@@ -10,7 +10,7 @@ import pytest
 
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.reader import load
-from dancetutor_cli.feet.passages import Passage, hardest, passage_settings
+from dancetutor_cli.feet.passages import Passage, hardest_passages, passage_settings
 from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.lint.sections import check_part, part_of
@@ -35,7 +35,7 @@ def played(song: Song, index: int = 3) -> Play:
 
 
 def test_the_passage_with_the_spin_is_the_hardest_of_the_demo_song(song: Song) -> None:
-    found = hardest(played(song), song.charts[3].timing)
+    found = hardest_passages(played(song), song.charts[3].timing)
     first = found[0]
     assert first.first <= 11 < first.last  # the spin and the doublestep are in measures 11 and 12
     assert first.spins == 1 and first.doublesteps == 1 and sum(first.crossovers) >= 1
@@ -45,7 +45,7 @@ def test_the_passage_with_the_spin_is_the_hardest_of_the_demo_song(song: Song) -
 @pytest.mark.parametrize("index", range(6))
 def test_passages_keep_apart_and_lie_on_measures(song: Song, index: int) -> None:
     chart = song.charts[index]
-    found = hardest(played(song, index), chart.timing)
+    found = hardest_passages(played(song, index), chart.timing)
     assert len(found) <= passage_settings().most
     taken: set[int] = set()
     for one in found:
@@ -60,18 +60,20 @@ def test_passages_keep_apart_and_lie_on_measures(song: Song, index: int) -> None
 def test_a_harder_move_makes_a_passage_harder(song: Song) -> None:
     play, timing = played(song), song.charts[3].timing
     settings = passage_settings()
-    before = hardest(play, timing, settings)[0].score
-    assert hardest(play, timing, replace(settings, spin=settings.spin + 7.5))[0].score == pytest.approx(before + 1.0)
+    before = hardest_passages(play, timing, settings)[0].score
+    assert hardest_passages(play, timing, replace(settings, spin=settings.spin + 7.5))[0].score == pytest.approx(
+        before + 1.0
+    )
 
 
 def test_nothing_stands_out_where_all_is_alike(song: Song) -> None:
     play = played(song)
-    assert hardest(play, song.charts[3].timing, replace(passage_settings(), harder=50.0)) == ()
+    assert hardest_passages(play, song.charts[3].timing, replace(passage_settings(), harder=50.0)) == ()
 
 
 def test_a_section_can_be_the_hardest_passage(song: Song) -> None:
     chart = song.charts[3]
-    found = hardest(played(song), chart.timing)
+    found = hardest_passages(played(song), chart.timing)
     check_part("hardest:1")
     part = part_of("Hardest:2", song, chart, load_preset("itg"), 60.0)
     assert part == (found[1].start, found[1].end)

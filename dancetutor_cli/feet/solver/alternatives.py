@@ -54,10 +54,10 @@ def alternatives(
     ways = _Ways(engine, layers)
     paths = [path for path, _ in zip(ways.cheapest(), range(count), strict=False)]
     plays = [play_of(rows, engine, engine.with_details(rows, engine.path_along(path))) for path in paths]
-    return tuple(_against(plays[0], play) for play in plays)
+    return tuple(_compared(plays[0], play) for play in plays)
 
 
-def _against(best: Play, play: Play) -> Alternative:
+def _compared(best: Play, play: Play) -> Alternative:
     difference = play.cost.sum(axis=0) - best.cost.sum(axis=0)
     return Alternative(
         play=play,
@@ -197,7 +197,7 @@ _HELD[[StepKind.HOLD, StepKind.ROLL, StepKind.ROLL_TAP]] = True
 
 
 @dataclass(frozen=True, slots=True)
-class Blame:
+class DoublestepCause:
     """The cause of a doublestep.
 
     row : row of the doublestep; forced : whether the other foot holds a panel at that moment
@@ -212,7 +212,7 @@ class Blame:
     cause_column: int = -1
 
 
-def doublestep_causes(play: Play, pad: Pad, preset: Preset) -> tuple[Blame, ...]:
+def doublestep_causes(play: Play, pad: Pad, preset: Preset) -> tuple[DoublestepCause, ...]:
     """Return the causes of all doublesteps of a play, forced or not, in the order of rows."""
     out = []
     holds: dict[int, NDArray[np.int64]] = {}
@@ -227,24 +227,24 @@ def doublestep_causes(play: Play, pad: Pad, preset: Preset) -> tuple[Blame, ...]
             # the second is for a bracket on the foot's own hold
             found = [_holder(row, holds[foot], len(pad)) for foot in (other, stepping)]
             lasting = [one for one in found if _lasts(play.rows, one)]
-            out.append(lasting[0] if lasting else Blame(row, True, "pattern"))
+            out.append(lasting[0] if lasting else DoublestepCause(row, True, "pattern"))
         elif "doublestep" in names:
-            out.append(_culprit(play, row, engine))
+            out.append(_unforced_cause(play, row, engine))
     return tuple(out)
 
 
-def _holder(row: int, holds: NDArray[np.int64], columns: int) -> Blame:
+def _holder(row: int, holds: NDArray[np.int64], columns: int) -> DoublestepCause:
     """Return the last hold or roll of a foot before a row; holds : row * columns + column of the foot's holds and
     rolls.
     """
     before = int(holds.searchsorted(row * columns)) - 1
     if before < 0:
-        return Blame(row, True, "pattern")
+        return DoublestepCause(row, True, "pattern")
     at = int(holds[before]) // columns
-    return Blame(row, True, "hold", at, int(holds[holds.searchsorted(at * columns)]) % columns)
+    return DoublestepCause(row, True, "hold", at, int(holds[holds.searchsorted(at * columns)]) % columns)
 
 
-def _lasts(rows: Rows, held: Blame) -> bool:
+def _lasts(rows: Rows, held: DoublestepCause) -> bool:
     """Whether a hold ended after the row two before the doublestep; always true of a roll, whose end is not known."""
     if held.cause != "hold":
         return False
@@ -252,17 +252,17 @@ def _lasts(rows: Rows, held: Blame) -> bool:
     return end < 0 or end > int(rows.tick[max(held.row - 2, 0)])
 
 
-def _culprit(play: Play, row: int, engine: Engine) -> Blame:
+def _unforced_cause(play: Play, row: int, engine: Engine) -> DoublestepCause:
     suspects = _suspects(play.rows, row)
     if not suspects:
-        return Blame(row, False, "pattern")  # only single steps are near
+        return DoublestepCause(row, False, "pattern")  # only single steps are near
     first, last = max(0, row - 2 * _ROWS_BEFORE), row + _ROWS_AFTER
     here = _without(play.rows, first, last, row, [None, *suspects], engine) - 1
     if here < 0:  # a cause further back in the chart affects the row
         here = _without(play.rows, 0, len(play.rows), row, suspects, engine)
     if here == len(suspects):
-        return Blame(row, False, "pattern")
-    return Blame(row, False, suspects[here].cause, suspects[here].row, suspects[here].named)
+        return DoublestepCause(row, False, "pattern")
+    return DoublestepCause(row, False, suspects[here].cause, suspects[here].row, suspects[here].shown_column)
 
 
 class _Suspect(NamedTuple):
@@ -273,7 +273,7 @@ class _Suspect(NamedTuple):
     cause: str
     row: int
     column: int
-    named: int
+    shown_column: int
 
     def instead(self, step: int, end: int, mine: int) -> tuple[int, int, int]:
         """Return the cell without the cause: a mine or a step of a jump is removed, a hold becomes a tap."""

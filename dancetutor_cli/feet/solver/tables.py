@@ -35,7 +35,8 @@ FIRST, BASE = range(2)  # columns of `RowStates.row`
 # columns of `SolverPath.edit`: a cell, its new contents, and the row that is checked for a doublestep
 EDIT_ROW, EDIT_COLUMN, EDIT_STEP, EDIT_END, EDIT_MINE, EDIT_OF = range(6)
 START = 0  # number of the layer and the state before the first row
-# what a kernel needs before it can continue
+# What a kernel needs before it can continue. It returns one of these, and the row at which it stopped, before it would
+# write beyond the end of a table. `Engine._run_to_end` makes room and calls it again from that row; DONE is the end.
 (
     DONE, MORE_STATES, MORE_PATTERNS, MORE_MOVES, MORE_PAIRS, MORE_NODES, MORE_FACTS, MORE_TERMS, MORE_TIMED,
     MORE_LAYERS, MORE_LAYER_STATES, MORE_TRANSITIONS, MORE_EDGES, MORE_SCRATCH, UNEXPLORED,
@@ -59,8 +60,10 @@ class Tables(NamedTuple):
     transition's layer
     pattern : int64 (, 2), packed row and overrides; pattern_hash : int32
     pair : int64 (, 2), pattern << 32 | state or -1, and first move << 16 | number of moves
-    move : int32 (, 4), next state, cost without time, number of its facts about time, limb codes
-    wide : int64 (, 2), limb codes with parts above `PART_SHIFT`; events with a number of `terms` above `TERMS_SHIFT`
+    move : int32 (, 4), what every row's search reads of a move: next state, cost without time, number of its facts
+    about time, limb codes
+    wide : int64 (, 2), what only the cheapest way needs of a move: limb codes with parts above `PART_SHIFT`; events
+    with a number of `terms` above `TERMS_SHIFT`
     terms : int32 (, w), cost by weight, which many moves share; terms_hash : int32
     timed_key : int64, packed facts; timed_hash : int32
     timed_cost : int32 (, ), 1 + cost of facts by number, UNKNOWN if not computed yet; one row for each time found so
