@@ -114,7 +114,7 @@ class Clock:
 
 
 @dataclass(frozen=True, slots=True)
-class Moments(Clock):
+class PictureClock(Clock):
     """A clock for single pictures: frame k shows the k-th of `times`, seconds of the music."""
 
     times: tuple[float, ...] = ()
@@ -237,11 +237,11 @@ class JointBlocks:
 
     The blocks are always the same, so that no bit of a frame depends on the frames that were drawn before it.
 
-    made : returns the world matrices (f, j, 4, 4) of the joints at f moments
+    joints_at : returns the world matrices (f, j, 4, 4) of the joints at f moments
     """
 
-    def __init__(self, made: Callable[[Sequence[Moment]], NDArray[np.float64]], clock: Clock) -> None:
-        self._made, self._clock = made, clock
+    def __init__(self, joints_at: Callable[[Sequence[Moment]], NDArray[np.float64]], clock: Clock) -> None:
+        self._joints_at, self._clock = joints_at, clock
         self._block, self._joints = -1, np.zeros((0, 0, 4, 4))
 
     def at(self, number: int) -> NDArray[np.float64]:
@@ -249,7 +249,7 @@ class JointBlocks:
         block = number // BLOCK
         if block != self._block:
             frames = range(block * BLOCK, min((block + 1) * BLOCK, self._clock.frames))
-            self._joints = self._made([self._clock.moment(k) for k in frames])
+            self._joints = self._joints_at([self._clock.moment(k) for k in frames])
             self._block = block
         joints: NDArray[np.float64] = self._joints[number - block * BLOCK]
         return joints

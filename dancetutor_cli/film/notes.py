@@ -75,7 +75,7 @@ class Callout:
     """Words for a passage. second : second of the music at which the passage begins; beat : the same as drawn
 
     severity : "move", "info", "warning" or "error"
-    begin : second from which the passage is called out; end : second at which it is over
+    called_from : second from which the passage is called out; end : second at which it is over
     tag : fewer words, for the place beside the notes
     further : second, beat and tag of the passage's other moves
     why : the reason, which is shown if there is room for it
@@ -85,7 +85,7 @@ class Callout:
     beat: float
     text: str
     severity: str
-    begin: float
+    called_from: float
     end: float
     tag: str
     further: tuple[tuple[float, float, str], ...] = ()

@@ -194,7 +194,7 @@ def moments(callouts: Sequence[Callout], passes: Sequence[Pass]) -> list[Moment]
     """Return moments at which passages are called out, at most `MOST_MOMENTS` of one pass for each rate."""
     found: list[Moment] = []
     for rate, one in {one.rate: one for one in passes}.items():
-        spans = [(max(call.begin, one.start), min(max(call.end, call.second), one.end)) for call in callouts]
+        spans = [(max(call.called_from, one.start), min(max(call.end, call.second), one.end)) for call in callouts]
         spans = [(low, high) for low, high in spans if low < high]
         if spans:
             step = max(MOMENT_STEP, sum(high - low for low, high in spans) / MOST_MOMENTS)

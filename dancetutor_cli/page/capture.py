@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.smoothing import low_pass, sample_path
 from dancetutor_cli.dance.units import Array
-from dancetutor_cli.film.scene.bare_floor import FOCAL, FOLLOWED_BELOW, FULL_RED, TARGET_HEIGHT, floor_under
+from dancetutor_cli.film.scene.follow import FOCAL, FOLLOWED_BELOW, FULL_RED, TARGET_HEIGHT, floor_under
 from dancetutor_cli.film.scene.scene import PANEL, Scene
 from dancetutor_cli.page.content import pack_body, pack_motion, pack_stage
 from dancetutor_cli.page.document import Blob, document

@@ -137,7 +137,7 @@ def _foot_colour(text: str, language: Language) -> RGB | None:
 
 def _remaining_share(call: Callout, second: float) -> float:
     """Return the remaining share of the time to the next move of a passage, 1 to 0; 0 from the last move on."""
-    begin = call.begin
+    begin = call.called_from
     for move in (call.second, *(move for move, *_ in call.further)):
         if second < move:
             return min(1.0, (move - second) / max(move - begin, 1e-9))
@@ -162,7 +162,7 @@ class Calls:
     ) -> None:
         self.callouts, self.box, self.scale = callouts, box, scale
         self.face, self.style, self._language = style
-        self._begins = np.array([one.begin for one in callouts])
+        self._begins = np.array([one.called_from for one in callouts])
         self._ends = np.array([max(one.end, one.second) + CALL_STAYS for one in callouts])
         self._sprite = lru_cache(maxsize=32)(self._plate)
 
@@ -189,7 +189,7 @@ class Calls:
                 break  # the call would cover the words below the box; the tag beside the notes has the same words
             x = self.box[2] - label.shape[1]
             over = max(one.end, one.second) + CALL_STAYS
-            fade = min(1.0, (second - one.begin) / 0.12, (over - second) / CALL_FADES)
+            fade = min(1.0, (second - one.called_from) / 0.12, (over - second) / CALL_FADES)
             blit(frame, label, x, round(y), fade)
             y += label.shape[0] + 4 * self.scale
             share = _remaining_share(one, second)

@@ -203,11 +203,11 @@ def callouts_of(
             float(beat),
             passage.text(),
             _ORDER[passage.weight],
-            float(begin),
-            float(end),
-            passage.tag(len(passage.further(seconds))),
-            tuple(further(passage)),
-            passage.reason(),
+            called_from=float(begin),
+            end=float(end),
+            tag=passage.tag(len(passage.further(seconds))),
+            further=tuple(further(passage)),
+            why=passage.reason(),
         )
         for passage, start, beat, begin, end in zip(passages, starts, beats, begins, ends, strict=True)
     )

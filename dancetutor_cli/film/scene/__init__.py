@@ -2,8 +2,7 @@
 
 scene, look                   the still scene and the state of one frame; their numbers, from configs/picture.yaml
 dancer, visibility            the dancer's state at a moment; her hidden parts
-camera, follow                the cameras; a camera that follows her across a wide pad
+camera, follow                the cameras; those that follow her across a wide pad, or a motion on a bare floor
 geometry, props               meshes as flat arrays; bar and screen
-bare_floor                    the floor and the camera of a motion without a chart
 renderer, shared              the interface of both renderers and the choice; their common computations
 """

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
-from dancetutor_cli.film.clock import Moments
+from dancetutor_cli.film.clock import PictureClock
 from dancetutor_cli.film.media.encoder import PICTURES, Encoding, join
 from dancetutor_cli.film.work.request import FilmRequest, film_key, look_up
 from dancetutor_cli.film.work.segments import (
@@ -281,14 +281,14 @@ def pose_plan(plan: FilmPlan, label: str) -> FilmPlan:
     times = () if rows is None else tuple(float(t) for t in rows.second if start <= t <= end)
     if not times:
         raise DancetutorError(f"{label}: there is no step here, so there is no pose to draw")
-    clock = Moments(plan.clock.passes[:1], plan.clock.fps, times)
+    clock = PictureClock(plan.clock.passes[:1], plan.clock.fps, times)
     beats = np.interp(times, plan.lines.second, plan.lines.beat) if len(plan.lines.second) else np.zeros(len(times))
     return replace(plan, clock=clock, beats=beats)
 
 
 def write_pose_index(folder: Path, song: Song, chart: Chart, plan: FilmPlan) -> None:
     """Write the index of pictures and rows: an object with one entry for each picture."""
-    assert isinstance(plan.clock, Moments)
+    assert isinstance(plan.clock, PictureClock)
     notes = chart.notes
     seconds = chart.timing.seconds(notes.tick)
     entries = []

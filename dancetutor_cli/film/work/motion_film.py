@@ -19,8 +19,8 @@ from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.media.encoder import Encoding, encode_segment, join
 from dancetutor_cli.film.overlay.text import font
 from dancetutor_cli.film.scene import renderer
-from dancetutor_cli.film.scene.bare_floor import EYE, FOCAL, FOLLOWED_BELOW, FULL_RED, TARGET_HEIGHT, floor_under
 from dancetutor_cli.film.scene.camera import Camera
+from dancetutor_cli.film.scene.follow import EYE, FOCAL, FOLLOWED_BELOW, FULL_RED, TARGET_HEIGHT, floor_under
 from dancetutor_cli.film.scene.scene import FrameState, Scene
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.ffmpeg import EncoderError

@@ -207,7 +207,7 @@ def test_a_finding_for_a_passage_is_reported_of_all_its_rows() -> None:
 def test_how_long_before_is_a_setting_in_seconds_or_beats(ahead: str, begin: float) -> None:
     (one,) = called(moves((4.0, "footswitch")), ahead=parse_ahead(ahead))
     assert one.second == 2.0
-    assert one.begin == pytest.approx(begin)
+    assert one.called_from == pytest.approx(begin)
 
 
 def test_the_default_is_a_second_or_a_little_less() -> None:
