@@ -3,7 +3,7 @@
 Each round bakes roughly, measures three things and plans the path again: where the centre of mass is over the root, how
 far pinned palms pulled it down, and which ankles bend too far. Without palms two rounds are enough; the rest is
 corrected frame by frame (`dance.bake`). With palms there are three, because how the body bends at the depth to which
-they pull it is not known before the first: the round in the middle plans only the height anew.
+they pull it is not known before the first: the round in the middle plans only the height again.
 """
 
 from __future__ import annotations
