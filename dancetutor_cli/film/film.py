@@ -21,7 +21,7 @@ from dancetutor_cli.film.overlay.marks import HighwayGeometry, lane_width_for_wo
 from dancetutor_cli.film.overlay.sprites import WordStyle, callout_words, highway_style
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.picture import Frame, darkened
-from dancetutor_cli.film.placement import PartBoxes, Placement, Stay, place_words, stay
+from dancetutor_cli.film.placement import PartBoxes, Placement, Stay, place_words, stay_of
 from dancetutor_cli.film.plan import FilmPlan, faces_viewer
 from dancetutor_cli.film.scene.props import Television
 from dancetutor_cli.film.scroll import parse_scroll
@@ -198,7 +198,7 @@ class Film:
         inside = [(max(a, left), max(b, top), min(c, right), min(d, bottom)) for a, b, c, d in boxes]
         there = [(a - left, b - top, c - left, d - top) for a, b, c, d in inside if a < c and b < d]
         one = self.plan.clock.passes[run]
-        return stay(
+        return stay_of(
             one, self.plan.presses, lambda seconds, step: self._dancer.walks_behind(there, seconds, step, one.rate)
         )
 

@@ -31,7 +31,7 @@ SQUARE = 2.5  # maximum panel widths between the outer columns of a pad of one s
 LEGEND_OFF = 14.0  # pixels between the song's words and a legend below them
 RUNS_TOP, RUNS_BOTTOM = 0.84, 0.93  # shares of the picture's height: the name of a run without a box or a header
 RUNS_OFF = 9.0  # pixels between the header and the name of a run
-SeenAt = Callable[[Sequence[Moment]], NDArray[np.float64]]
+BoxesAt = Callable[[Sequence[Moment]], NDArray[np.float64]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,33 +76,35 @@ class Placement:
     calls: Calls | None
 
 
-def place_words(plan: FilmPlan, boxes: PartBoxes, style: WordStyle, seen: SeenAt | None, turned: bool) -> Placement:
+def place_words(
+    plan: FilmPlan, boxes: PartBoxes, style: WordStyle, boxes_at: BoxesAt | None, turned: bool
+) -> Placement:
     """Find the places of all words of a film.
 
-    seen : returns the boxes of the dancers' heads and feet in the dancer's box at these moments, (n, 4); None without
-        dancers
+    boxes_at : returns the boxes (n, 4) of the dancers' heads and feet at these moments, pixels of the dancer's box;
+        None without dancers
     turned : whether the dancer faces the viewer
     """
 
-    def taken(moments_of: Callable[[], list[Moment]]) -> NDArray[np.float64]:
+    def heads_and_feet(moments_of: Callable[[], list[Moment]]) -> NDArray[np.float64]:
         """Return the boxes of heads and feet in the picture, with an edge around them."""
-        if seen is None:
+        if boxes_at is None:
             return np.zeros((0, 4))
         left, top, _, _ = boxes.box("dancer")
         edge = CALLS_OFF * boxes.scale
-        return np.asarray(seen(moments_of()) + np.array([left - edge, top - edge, left + edge, top + edge]))
+        return np.asarray(boxes_at(moments_of()) + np.array([left - edge, top - edge, left + edge, top + edge]))
 
     passes = plan.clock.passes
     header = None
     if (part := boxes.layout.header) is not None:
-        room = WordsRoom(part.room, taken(lambda: step_moments(plan.presses, passes)))
+        room = WordsRoom(part.room, heads_and_feet(lambda: step_moments(plan.presses, passes)))
         header = Header(plan.words, boxes.box("header"), boxes.scale * part.text, style, room)
     feet = _feet_box(plan, boxes, header)
     legend = _legend(plan, boxes, style, header, feet, turned)
     calls = None
     if boxes.layout.dancer is not None and plan.callouts:
         box, scale = calls_room(boxes, None if header is None else header.title_end)
-        box = clear(box, taken(lambda: moments(plan.callouts, passes)), CALLS_WIDE * scale)
+        box = clear_part(box, heads_and_feet(lambda: call_moments(plan.callouts, passes)), CALLS_WIDE * scale)
         calls = Calls(plan.callouts, box, scale, style)
     return Placement(header, legend, feet, _runs(plan, boxes, style, header), calls)
 
@@ -190,7 +192,7 @@ def calls_room(boxes: PartBoxes, title_end: tuple[float, float] | None) -> Calls
     return CallsRoom((left, top, right, top + round(CALLS_HIGH * scale)), scale)
 
 
-def moments(callouts: Sequence[Callout], passes: Sequence[Pass]) -> list[Moment]:
+def call_moments(callouts: Sequence[Callout], passes: Sequence[Pass]) -> list[Moment]:
     """Return moments at which passages are called out, at most `MOST_MOMENTS` of one pass for each rate."""
     found: list[Moment] = []
     for rate, one in {one.rate: one for one in passes}.items():
@@ -219,7 +221,7 @@ def step_moments(presses: Presses, passes: Sequence[Pass]) -> list[Moment]:
     return found
 
 
-def clear(box: PixelBox, taken: NDArray[np.float64], least: float) -> PixelBox:
+def clear_part(box: PixelBox, taken: NDArray[np.float64], least: float) -> PixelBox:
     """Return the part of a box to the right of the taken places, at least `least` pixels wide.
 
     If there is no such room beside the dancer's head, the box moves down beside her trunk, or to her left. If no place
@@ -269,7 +271,7 @@ class Stay:
         return min(1.0, max(0.0, min(second - self.since, self.until - second) / (FADE * self.rate)))
 
 
-def stay(one: Pass, presses: Presses, covered: Covered) -> Stay:
+def stay_of(one: Pass, presses: Presses, covered: Covered) -> Stay:
     """Return the time in which words stand in the picture during a pass.
 
     They appear when the dancer has walked past them before the first step, and disappear before she walks past them

@@ -15,7 +15,7 @@ from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.notes import Callout, Presses
-from dancetutor_cli.film.placement import MOMENT_STEP, MOST_MOMENTS, clear, moments, step_moments
+from dancetutor_cli.film.placement import MOMENT_STEP, MOST_MOMENTS, call_moments, clear_part, step_moments
 from dancetutor_cli.run.reading import config_names
 
 BOX = (100, 10, 300, 60)
@@ -26,22 +26,22 @@ def taken(*boxes: tuple[float, float, float, float]) -> np.ndarray[tuple[int, in
 
 
 def test_a_box_that_nobody_comes_into_stays() -> None:
-    assert clear(BOX, taken(), 80) == BOX
-    assert clear(BOX, taken((120, 60, 180, 90), (20, 0, 100, 90)), 80) == BOX
+    assert clear_part(BOX, taken(), 80) == BOX
+    assert clear_part(BOX, taken((120, 60, 180, 90), (20, 0, 100, 90)), 80) == BOX
 
 
 def test_a_box_begins_behind_her_head_where_there_is_room() -> None:
-    assert clear(BOX, taken((120, 40, 180.5, 90)), 80) == (181, 10, 300, 60)
+    assert clear_part(BOX, taken((120, 40, 180.5, 90)), 80) == (181, 10, 300, 60)
 
 
 def test_without_room_it_stands_below_her_head() -> None:
-    left, top, right, bottom = clear(BOX, taken((120, 40, 250, 90), (120, 200, 180, 300)), 80)
+    left, top, right, bottom = clear_part(BOX, taken((120, 40, 250, 90), (120, 200, 180, 300)), 80)
     assert (left, right) == (100, 300) and top == 90 and bottom == 140
 
 
 def test_without_any_room_it_stands_on_her_left_or_as_it_was() -> None:
-    assert clear(BOX, taken((190, 0, 290, 500)), 80) == (100, 10, 190, 60)
-    assert clear(BOX, taken((110, 0, 290, 500)), 80) == BOX
+    assert clear_part(BOX, taken((190, 0, 290, 500)), 80) == (100, 10, 190, 60)
+    assert clear_part(BOX, taken((110, 0, 290, 500)), 80) == BOX
 
 
 def callout(begin: float, second: float, end: float, text: str = "crossover") -> Callout:
@@ -50,13 +50,13 @@ def callout(begin: float, second: float, end: float, text: str = "crossover") ->
 
 def test_moments_are_those_in_which_something_is_called_out() -> None:
     told = [callout(1.0, 2.0, 2.0), callout(1.5, 3.0, 4.0), callout(90.0, 91.0, 91.0)]
-    found = moments(told, [Pass(0.0, 80.0)])
+    found = call_moments(told, [Pass(0.0, 80.0)])
     seconds = np.array([one.second for one in found])
     assert seconds.min() == 1.0 and 3.8 < seconds.max() < 4.0 and (np.diff(seconds) > 0).all()
-    twice = moments(told, [Pass(0.0, 80.0, 0.5), Pass(0.0, 80.0), Pass(0.0, 80.0)])
+    twice = call_moments(told, [Pass(0.0, 80.0, 0.5), Pass(0.0, 80.0), Pass(0.0, 80.0)])
     assert [one.rate for one in twice] == [0.5] * len(found) + [1.0] * len(found)
-    assert len(moments([callout(0.0, 900.0, 9000.0)], [Pass(0.0, 9000.0)])) <= MOST_MOMENTS
-    assert moments([], [Pass(0.0, 9.0)]) == moments([callout(9.0, 10.0, 10.0)], [Pass(0.0, 5.0)]) == []
+    assert len(call_moments([callout(0.0, 900.0, 9000.0)], [Pass(0.0, 9000.0)])) <= MOST_MOMENTS
+    assert call_moments([], [Pass(0.0, 9.0)]) == call_moments([callout(9.0, 10.0, 10.0)], [Pass(0.0, 5.0)]) == []
 
 
 def test_without_a_step_she_stands_there_for_a_whole_run() -> None:

@@ -19,7 +19,7 @@ from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.notes import Callout, Presses
-from dancetutor_cli.film.placement import FADE, PASSING_STEP, stay
+from dancetutor_cli.film.placement import FADE, PASSING_STEP, stay_of
 from dancetutor_cli.film.scene.camera import Camera
 from dancetutor_cli.film.scene.visibility import Silhouette
 
@@ -36,7 +36,7 @@ def test_words_come_when_she_has_passed_and_go_before_she_comes_back() -> None:
     def covered(seconds: NDArray[np.float64], step: float) -> NDArray[np.bool_]:
         return (seconds < 2.0) | (seconds > 18.0)
 
-    one = stay(Pass(0.0, 20.0), presses(5.0, 15.0), covered)
+    one = stay_of(Pass(0.0, 20.0), presses(5.0, 15.0), covered)
     assert one.opacity(0.0) == one.opacity(1.99) == one.opacity(18.01) == one.opacity(20.0) == 0
     assert all(
         one.opacity(t) == 1 for t in (2.0 + 2 * PASSING_STEP + FADE, 5.0, 10.0, 15.0, 18.0 - 2 * PASSING_STEP - FADE)
@@ -44,13 +44,13 @@ def test_words_come_when_she_has_passed_and_go_before_she_comes_back() -> None:
 
 
 def test_words_that_nobody_passes_always_stand() -> None:
-    assert stay(Pass(0.0, 20.0), presses(), lambda t, _: t > 0).opacity(1.0) == 1
-    assert stay(Pass(6.0, 9.0), presses(5.0, 15.0), lambda t, _: t > 0).opacity(6.0) == 1
-    assert stay(Pass(0.0, 20.0), presses(5.0), lambda t, _: t < 0).opacity(0.0) == 1
+    assert stay_of(Pass(0.0, 20.0), presses(), lambda t, _: t > 0).opacity(1.0) == 1
+    assert stay_of(Pass(6.0, 9.0), presses(5.0, 15.0), lambda t, _: t > 0).opacity(6.0) == 1
+    assert stay_of(Pass(0.0, 20.0), presses(5.0), lambda t, _: t < 0).opacity(0.0) == 1
 
 
 def test_at_half_speed_they_come_as_slowly_as_at_full() -> None:
-    one = stay(Pass(0.0, 20.0, 0.5), presses(5.0), lambda t, _: t < 2.0)
+    one = stay_of(Pass(0.0, 20.0, 0.5), presses(5.0), lambda t, _: t < 2.0)
     ramp = [t for t in np.arange(2.0, 3.0, 0.001) if 0 < one.opacity(t) < 1]
     assert ramp[-1] - ramp[0] == pytest.approx(0.5 * FADE, abs=0.01)
 

@@ -254,7 +254,6 @@ def encode_segment(frames: Iterable[Frame], encoding: Encoding, path: Path, firs
 
 def save_picture(frame: Frame, path: Path) -> None:
     """Write one frame as PNG."""
-
     try:
         path.write_bytes(picture_bytes(frame, compress_level=2))
     except OSError as error:

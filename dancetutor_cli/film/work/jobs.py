@@ -17,12 +17,12 @@ from dancetutor_cli.film.work.segments import (
     FilmRecord,
     PlanFile,
     Segment,
+    cut_segments,
     digest_of,
-    film_of,
+    load_film,
     move_segment,
     new_work_name,
     remove_work,
-    segments,
     write_plan,
 )
 from dancetutor_cli.run.errors import DancetutorError, FileError
@@ -125,7 +125,6 @@ def open_film(job: FilmJob, earlier: FilmRecord, work: str) -> OpenedFilm:
 
     earlier : the record of that run; work : name of the folder to make beside the output, for unfinished files
     """
-
     subject = look_up(job.request)
     frames = subject.clock.frames
     if job.longest is not None and max(subject.clock.seconds, subject.chart_seconds) > job.longest:
@@ -139,7 +138,7 @@ def open_film(job: FilmJob, earlier: FilmRecord, work: str) -> OpenedFilm:
         left = [job.output.parent / name for name in earlier.folders if name != work]
         left += _new_folder(folder)  # before the slow work, so that a full or read-only disk is found at once
         plan, sound, warnings = _prepared(job, subject)
-        parts = tuple(segments(plan.clock.frames, job.encoding, folder))
+        parts = tuple(cut_segments(plan.clock.frames, job.encoding, folder))
         if earlier.key == key and job.encoding.target != PICTURES:
             finished = tuple(
                 part.number for part in parts if _take_over_segment(part, left, earlier.digests.get(part.number))
@@ -220,7 +219,7 @@ def close_film(job: FilmJob, opened: OpenedFilm, digests: dict[int, str]) -> Clo
         finish(list(opened.parts), job.encoding, opened.sound and opened.sound_file, opened.folder, job.output)
         if job.poster is not None or job.srt:
             assert opened.plan is not None
-            film = film_of(opened.plan)
+            film = load_film(opened.plan)
             if job.poster is not None:
                 write_poster(job.poster, film)
             if job.srt:

@@ -182,7 +182,7 @@ class PlanFile(NamedTuple):
     digest: str
 
 
-def segments(frames: int, encoding: Encoding, folder: Path) -> list[Segment]:
+def cut_segments(frames: int, encoding: Encoding, folder: Path) -> list[Segment]:
     """Cut a film of `frames` frames into segments, whose files lie in `folder`."""
     step = max(1, round(SEGMENT_SECONDS * encoding.fps))
     out = []
@@ -201,7 +201,7 @@ def write_plan(plan: FilmPlan, path: Path) -> PlanFile:
 
 
 @lru_cache(maxsize=1)
-def film_of(plan: PlanFile) -> Film:
+def load_film(plan: PlanFile) -> Film:
     """Load the film of a plan's file; it is kept while segments of one film follow each other.
 
     A pickle can run any code, so a pickle that this program has not written is never loaded.
@@ -254,8 +254,7 @@ def warm_up() -> None:
 
 def render_segment(report: Report, plan: PlanFile, segment: Segment, encoding: Encoding) -> str:
     """Draw and encode one segment; returns its SHA-256, "" for pictures. An incomplete file is never left."""
-
-    film = film_of(plan)
+    film = load_film(plan)
     part = segment.path
     if encoding.target != PICTURES:
         part = segment.path.with_name(f".{segment.path.stem}.{uuid.uuid4().hex}{encoding.format.segment}")
