@@ -230,7 +230,7 @@ def test_a_full_disk_leaves_no_frames_behind(tmp_path: Path, monkeypatch: pytest
             path.write_bytes(b"half a segment")
         raise FileError(path, "No space left on device")
 
-    monkeypatch.setattr(segments, "film_of", lambda plan: Pictures())
+    monkeypatch.setattr(segments, "load_film", lambda plan: Pictures())
     monkeypatch.setattr("dancetutor_cli.film.work.segments.encode_segment", full)
     for target, name in (("mp4", "segment_00000.mp4"), ("png", "frames")):
         encoding = Encoding(target, (64, 64), 10, "draft", "x264")  # type: ignore[arg-type]

@@ -143,7 +143,7 @@ def test_a_plan_that_was_exchanged_is_not_loaded(tmp_path: Path) -> None:
     plan = tmp_path / "plan.pickle"
     plan.write_bytes(pickle.dumps(_Payload(tmp_path / "mark")))
     with pytest.raises(FileError, match="was changed by another program"):
-        film_segments.film_of(PlanFile(plan, "0" * 64))
+        film_segments.load_film(PlanFile(plan, "0" * 64))
     assert not (tmp_path / "mark").exists()
 
 

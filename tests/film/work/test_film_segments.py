@@ -31,7 +31,7 @@ def _fails(write: Callable[[Path], None], error: BaseException) -> Callable[...,
 
 @pytest.fixture(autouse=True)
 def no_film(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(segments, "film_of", lambda plan: _NoFilm())
+    monkeypatch.setattr(segments, "load_film", lambda plan: _NoFilm())
 
 
 @pytest.mark.parametrize("error", [OSError(errno.ENOSPC, "No space left on device"), KeyboardInterrupt(), SystemExit()])
