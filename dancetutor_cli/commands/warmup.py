@@ -76,14 +76,14 @@ def _prepare(prepared: dict[str, PreparedFilm], steps_type: str) -> None:
 def _draw(prepared: PreparedFilm, quality: Quality) -> None:
     from dancetutor_cli.film.film import Film
     from dancetutor_cli.film.media.yuv import yuv420
-    from dancetutor_cli.film.overlay.blit import Run, strip
+    from dancetutor_cli.film.overlay.blit import Run, fill_run
 
     look = replace(prepared.plan.look, quality=quality)
     film = Film(replace(prepared.plan, look=look))
     width, height = look.size
     for number in (0, 1):
         frame = film.frame(number)
-        strip(frame, np.zeros((8, 8, 4), dtype=np.uint8), 0, Run(0, 8, 0))  # a hold's body, which these frames lack
+        fill_run(frame, np.zeros((8, 8, 4), dtype=np.uint8), 0, Run(0, 8, 0))  # a hold's body, which these frames lack
         yuv420(frame, np.empty(width * height * 3 // 2, dtype=np.uint8))
 
 

@@ -12,7 +12,7 @@ from dancetutor_cli.feet.limbs import LABELS, limb_colours
 from dancetutor_cli.film.clock import Clock
 from dancetutor_cli.film.layout import PixelBox
 from dancetutor_cli.film.notes import Callout
-from dancetutor_cli.film.overlay.blit import Box, Sprite, blit, rectangle
+from dancetutor_cli.film.overlay.blit import Box, Sprite, draw_rectangle, draw_sprite
 from dancetutor_cli.film.overlay.sprites import FLAG_EDGE, SOFT, WHITE, WordStyle, box_of, flag, flag_height
 from dancetutor_cli.film.overlay.text import Typeface, fit_text, wrap_words
 from dancetutor_cli.film.picture import Frame
@@ -66,15 +66,15 @@ class Runs:
         if self.labels:
             label = self.labels[run]
             x, y = self._corner(label)
-            blit(frame, label, x, round(y), opacity)
+            draw_sprite(frame, label, x, round(y), opacity)
         one = self.clock.passes[run]
         if one.count and second < one.sound_from - 1e-6:
             left = (one.sound_from - second) / (one.sound_from - one.start) * one.count
             number = self.numbers[min(one.count, max(1, math.ceil(left - 1e-6)))]
             x, y = _middle(number, self.count)
             above = self.counted.shape[0]
-            blit(frame, number, x, round(y + above / 2))
-            blit(frame, self.counted, _middle(self.counted, self.count)[0], round(y - above / 2))
+            draw_sprite(frame, number, x, round(y + above / 2))
+            draw_sprite(frame, self.counted, _middle(self.counted, self.count)[0], round(y - above / 2))
 
 
 def _middle(sprite: Sprite, box: tuple[float, ...]) -> tuple[float, float]:
@@ -190,11 +190,11 @@ class Calls:
             x = self.box[2] - label.shape[1]
             over = max(one.end, one.second) + CALL_STAYS
             fade = min(1.0, (second - one.called_from) / 0.12, (over - second) / CALL_FADES)
-            blit(frame, label, x, round(y), fade)
+            draw_sprite(frame, label, x, round(y), fade)
             y += label.shape[0] + 4 * self.scale
             share = _remaining_share(one, second)
             bar = (label.shape[1] - 8 * self.scale) * share
             edge = x + 4 * self.scale
             line = (edge, y, edge + bar, y + 4 * self.scale)
-            rectangle(frame, line, self.style.callout[one.severity], 0.9 * fade)
+            draw_rectangle(frame, line, self.style.callout[one.severity], 0.9 * fade)
             y += 14 * self.scale

@@ -188,7 +188,7 @@ def _rectangle(frame: Any, box: Any, colour: Any, opacity: int) -> None:  # prag
                 frame[y, x, k] = (frame[y, x, k] * (256 - weight) + colour[k] * weight + 128) // 256
 
 
-def blit(
+def draw_sprite(
     frame: Frame,
     sprite: Sprite,
     x: float,
@@ -210,7 +210,7 @@ def blit(
     _blit(frame, sprite, (round(x), whole, fraction), (low, high), (level, round(256 * gain)))
 
 
-def strip(
+def fill_run(
     frame: Frame,
     tile: Sprite,
     x: float,
@@ -229,7 +229,7 @@ def strip(
     _strip(frame, tile, round(x), edges, (low, high), round(256 * min(1.0, opacity)))
 
 
-def rectangle(frame: Frame, box: Box, colour: tuple[int, int, int], opacity: float = 1.0) -> None:
+def draw_rectangle(frame: Frame, box: Box, colour: tuple[int, int, int], opacity: float = 1.0) -> None:
     """Fill a rectangle whose edges have sub-pixel accuracy."""
     left, top, right, bottom = box
     height, width = frame.shape[:2]

@@ -128,9 +128,9 @@ class PadMap:
         for (x, y), direction, (level, limb) in zip(self.panels, self.directions, lit, strict=True):
             px, py = self.place(x, y)
             at = (round(px - size / 2), round(py - size / 2))
-            blit.blit(frame, panel_sprite(size, direction, None), *at, opacity)
+            blit.draw_sprite(frame, panel_sprite(size, direction, None), *at, opacity)
             if level > 0 and limb >= 0:
-                blit.blit(frame, panel_sprite(size, direction, limb), *at, level * opacity)
+                blit.draw_sprite(frame, panel_sprite(size, direction, limb), *at, level * opacity)
 
 
 @lru_cache(maxsize=128)
@@ -203,7 +203,7 @@ class FeetDiagram:
         """
         self.pads.draw(frame, [self.lights.at(column, second) for column in range(len(self.pads.panels))], opacity)
         if self.name is not None:
-            blit.blit(frame, self.name, *above(self.pads, self.name), opacity)
+            blit.draw_sprite(frame, self.name, *above(self.pads, self.name), opacity)
         for number, foot in enumerate(feet):
             if foot is None:
                 continue
@@ -215,7 +215,7 @@ class FeetDiagram:
             middle = (foot.heel[0] + foot.toe[0]) / 2, (foot.heel[1] + foot.toe[1]) / 2
             x, y = self.pads.place(*middle)
             if (seen := self.pads.nearness(*middle)) > 0.0:  # the dancer may walk beside the pad
-                blit.blit(frame, shoe, round(x - size / 2), y - size / 2, seen * opacity)
+                blit.draw_sprite(frame, shoe, round(x - size / 2), y - size / 2, seen * opacity)
 
 
 def name_sprite(name: str, face: Typeface, scale: float) -> Sprite:
@@ -302,7 +302,7 @@ class NextRows:
                 if column >= 0 and limbs[column] < 0:
                     self._mark(frame, pads, int(column), foot % 2, RESTING)
             name = self.name(place, row)
-            blit.blit(frame, name, *self._corner(pads, name))
+            blit.draw_sprite(frame, name, *self._corner(pads, name))
 
     def name(self, place: int, row: int) -> Sprite:
         """Return the name of the pad at `place`, which shows this row."""
@@ -321,4 +321,4 @@ class NextRows:
         mark = _marker(max(8, round(share * pads.unit)), limb, self.face)
         x, y = pads.place(*pads.panels[column])
         at = (round(x - mark.shape[1] / 2), round(y - mark.shape[0] / 2))
-        blit.blit(frame, mark, *at, 1.0 if share == STEPPED else 0.6)
+        blit.draw_sprite(frame, mark, *at, 1.0 if share == STEPPED else 0.6)

@@ -69,7 +69,7 @@ class Legend:
     def draw(self, frame: Frame, opacity: float = 1.0) -> None:
         """Draw the legend over the picture."""
         for sprite, x, y in self.lines:
-            blit.blit(frame, sprite, x, round(y), opacity)
+            blit.draw_sprite(frame, sprite, x, round(y), opacity)
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,12 +118,12 @@ class ProgressStrip:
         colour = style.accent if bright else (92, 98, 128)
         for x, height in enumerate(heights):
             base = 1.5 * self.scale
-            blit.rectangle(picture, (a + x, floor - base - (room - base) * height, a + x + 1, floor), colour, 0.88)
+            blit.draw_rectangle(picture, (a + x, floor - base - (room - base) * height, a + x + 1, floor), colour, 0.88)
         for edge in self.song.film:
             at = a + self._position(edge) * (b - a)
             if a < at < b:
                 box = (at - self.scale, 0, at + self.scale, bottom - top)
-                blit.rectangle(picture, box, style.difficulty["Medium"], 0.8)
+                blit.draw_rectangle(picture, box, style.difficulty["Medium"], 0.8)
         return picture
 
     def _position(self, second: float) -> float:
@@ -138,9 +138,9 @@ class ProgressStrip:
         frame[top:bottom, left:right] = self.ahead
         frame[top:bottom, left : left + split] = self.played[:, :split]
         here = (x - 1.2 * self.scale, top + 4 * self.scale, x + 1.2 * self.scale, bottom - 4 * self.scale)
-        blit.rectangle(frame, here, sprites.WHITE)
+        blit.draw_rectangle(frame, here, sprites.WHITE)
         words = self._sprite(f"{clock_text(second)} / {clock_text(self.song.end)}")
-        blit.blit(frame, words, left + 14 * self.scale, round((top + bottom - words.shape[0]) / 2))
+        blit.draw_sprite(frame, words, left + 14 * self.scale, round((top + bottom - words.shape[0]) / 2))
 
     def _time_sprite(self, text: str) -> Sprite:
         return self.face.sprite(text, self.text, sprites.WHITE, weight=0.2 * self.scale)

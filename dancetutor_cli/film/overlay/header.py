@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.density import bpm_text
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.film.layout import PixelBox, lowered
-from dancetutor_cli.film.overlay.blit import Box, Sprite, blit
+from dancetutor_cli.film.overlay.blit import Box, Sprite, draw_sprite
 from dancetutor_cli.film.overlay.sprites import SOFT, WHITE, WordStyle, box_of, plate
 from dancetutor_cli.film.overlay.text import LONGEST, Typeface, clean, fit_text, in_lines
 from dancetutor_cli.film.picture import Frame
@@ -76,7 +76,7 @@ class Lines:
     def draw(self, frame: Frame, opacity: float = 1.0) -> None:
         """Draw the words over the picture."""
         for sprite, x, y in self.lines:
-            blit(frame, sprite, x, round(y), opacity)
+            draw_sprite(frame, sprite, x, round(y), opacity)
 
 
 class Header:

@@ -14,7 +14,7 @@ from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.feet.limbs import limb_colours
 from dancetutor_cli.film.notes import QUANTISATIONS, BeatLines, Callout, NoteTrack, PanelLights, Presses, lighting
 from dancetutor_cli.film.overlay import marks, sprites
-from dancetutor_cli.film.overlay.blit import Ink, Run, Sprite, blit, rectangle, strip
+from dancetutor_cli.film.overlay.blit import Ink, Run, Sprite, draw_rectangle, draw_sprite, fill_run
 from dancetutor_cli.film.overlay.marks import EDGE, NUMBER_EDGE, NUMBER_OFF, HighwayGeometry, Marks
 from dancetutor_cli.film.overlay.text import Typeface, fit_text
 from dancetutor_cli.film.picture import Frame
@@ -108,15 +108,15 @@ class Highway:
     def background(self, frame: Frame) -> None:
         """Draw the still part, panel and lanes, which is needed only once."""
         _, top, _, bottom = self.geometry.box
-        rectangle(frame, self.geometry.box, self.style.background, 0.82)
+        draw_rectangle(frame, self.geometry.box, self.style.background, 0.82)
         lane, x0 = self.geometry.lane, self.geometry.left
         edge = EDGE * lane
         x1 = x0 + lane * len(self.geometry.directions)
-        rectangle(frame, (x0 - edge, top, x1 + edge, bottom), (0, 0, 0), 0.35)
+        draw_rectangle(frame, (x0 - edge, top, x1 + edge, bottom), (0, 0, 0), 0.35)
         for x in (x0 - edge, x1 + edge):
-            rectangle(frame, (x - 1, top, x + 1, bottom), self.style.lane_line, 0.3)
+            draw_rectangle(frame, (x - 1, top, x + 1, bottom), self.style.lane_line, 0.3)
         for i in range(1, len(self.geometry.directions)):
-            rectangle(frame, (x0 + i * lane - 0.5, top, x0 + i * lane + 0.5, bottom), self.style.lane_line, 0.08)
+            draw_rectangle(frame, (x0 + i * lane - 0.5, top, x0 + i * lane + 0.5, bottom), self.style.lane_line, 0.08)
 
     def draw(self, frame: Frame, second: float, beat: float, speed: float = 1.0) -> None:
         """Draw everything that moves at `second` of the music.
@@ -153,12 +153,12 @@ class Highway:
         for i in shown:
             strong = i % BEATS_PER_MEASURE == 0
             half = (1.25 if strong else 0.6) * lane / 84
-            rectangle(frame, (x0, y[i] - half, x1, y[i] + half), self.style.lane_line, 0.42 if strong else 0.13)
+            draw_rectangle(frame, (x0, y[i] - half, x1, y[i] + half), self.style.lane_line, 0.42 if strong else 0.13)
             if strong and abs(y[i] - last_label) > 0.3 * lane:
                 last_label = y[i]
                 number = self._number(int(i) // BEATS_PER_MEASURE)
                 x = x0 - number.shape[1] - 0.06 * lane
-                blit(frame, number, x, y[i] - number.shape[0] / 2, 0.75, self._rows)
+                draw_sprite(frame, number, x, y[i] - number.shape[0] / 2, 0.75, self._rows)
 
     @property
     def _rows(self) -> tuple[int, int]:
@@ -189,7 +189,7 @@ class Highway:
             at, (top, bottom) = way * middle - flag.shape[0] / 2, self._rows
             # A label is drawn whole or not at all.
             if self._tag_seconds[i] > now.second and top <= at and at + flag.shape[0] <= bottom:
-                blit(frame, flag, x, at, 1.0, self._rows)
+                draw_sprite(frame, flag, x, at, 1.0, self._rows)
 
     def _draw_flag(self, text: str, severity: str) -> Sprite:
         geometry = self.geometry
@@ -203,7 +203,7 @@ class Highway:
         _, top, _, bottom = geometry.box
         edge, half = (bottom, 0.5 * self.size) if geometry.down else (top, -0.5 * self.size)
         x = geometry.left + (geometry.lane * len(geometry.directions) - words.shape[1]) / 2
-        blit(frame, words, x, round((edge + geometry.receptor + half - words.shape[0]) / 2), 1.0, self._rows)
+        draw_sprite(frame, words, x, round((edge + geometry.receptor + half - words.shape[0]) / 2), 1.0, self._rows)
 
     @cached_property
     def _turned(self) -> Sprite:
@@ -217,12 +217,12 @@ class Highway:
         pulse = 1.0 + 0.35 * max(0.0, 1.0 - 3.0 * (beat % 1.0)) if beat >= 0 else 1.0
         for column, direction in enumerate(self.geometry.directions):
             x, y = self.geometry.corner(column, self.geometry.receptor, self.size)
-            blit(frame, self.receptors[direction], x, y, Ink(0.95, pulse), self._rows)
+            draw_sprite(frame, self.receptors[direction], x, y, Ink(0.95, pulse), self._rows)
             light, limb = self.lights.at(column, second)
             if light > 0:
                 glow = self.glows[direction, limb if limb >= 0 else 4]
                 gx, gy = self.geometry.corner(column, self.geometry.receptor, glow.shape[0])
-                blit(frame, glow, gx, gy, light, self._rows)
+                draw_sprite(frame, glow, gx, gy, light, self._rows)
 
     def _draw_notes(self, frame: Frame, now: _Now) -> None:
         notes, second = self.notes, now.second
@@ -255,7 +255,7 @@ class Highway:
     def _draw_body(self, frame: Frame, i: int, run: Run, opacity: float) -> None:
         tile = self.bodies[Kind(int(self.notes.kind[i])), int(self.notes.player[i])]
         x, _ = self.geometry.corner(int(self.notes.column[i]), 0, tile.shape[1])
-        strip(frame, tile, x, run, opacity, self._rows)
+        fill_run(frame, tile, x, run, opacity, self._rows)
 
     def _draw_hold(self, frame: Frame, i: int, run: Run, opacity: float) -> None:
         """Draw a hold. run : head, tail and phase; either end may be the higher one"""
@@ -264,9 +264,9 @@ class Highway:
         end = self.tails[Kind(int(self.notes.kind[i])), int(self.notes.player[i])]
         x, _ = self.geometry.corner(int(self.notes.column[i]), 0, end.shape[1])
         if tail >= head:
-            blit(frame, end, x, tail, opacity, self._rows)
+            draw_sprite(frame, end, x, tail, opacity, self._rows)
         else:
-            blit(frame, np.ascontiguousarray(end[::-1]), x, tail - end.shape[0], opacity, self._rows)
+            draw_sprite(frame, np.ascontiguousarray(end[::-1]), x, tail - end.shape[0], opacity, self._rows)
 
     def _draw_head(self, frame: Frame, i: int, y: float, second: float) -> None:
         notes = self.notes
@@ -280,4 +280,4 @@ class Highway:
             sprite = (self.lifts if kind == Kind.LIFT else self.arrows)[direction, q]
         x, top = self.geometry.corner(column, y, self.size)
         dim = LET_GO if kind in (Kind.HOLD, Kind.ROLL) and notes.gone_second[i] <= second + 1e-6 else 1.0
-        blit(frame, sprite, x, top, dim if notes.judged[i] else 0.55, self._rows)
+        draw_sprite(frame, sprite, x, top, dim if notes.judged[i] else 0.55, self._rows)

@@ -15,7 +15,7 @@ from dancetutor_cli.chart.model import Kind
 from dancetutor_cli.film.clock import Pass
 from dancetutor_cli.film.notes import Callout, NoteTrack
 from dancetutor_cli.film.overlay import sprites
-from dancetutor_cli.film.overlay.blit import Sprite, blit
+from dancetutor_cli.film.overlay.blit import Sprite, draw_sprite
 from dancetutor_cli.film.overlay.sprites import FLAG_EDGE
 from dancetutor_cli.film.overlay.text import Typeface, fit_text, narrowest
 from dancetutor_cli.film.picture import Frame
@@ -173,7 +173,7 @@ class Marks:
         across = side * SIDE_OFFSET * self.geometry.lane if side else self.behind(direction)[0]
         badge = self._sprite(size, -1 if gone or mine else max(int(self._notes.limb[i]), -1))
         x, top = self.geometry.corner(column, y, badge.shape[0])
-        blit(frame, badge, x + across, top + float(places.below[i]), 1.0, self.geometry.box[1::2])
+        draw_sprite(frame, badge, x + across, top + float(places.below[i]), 1.0, self.geometry.box[1::2])
 
     def _draw_sprite(self, size: int, limb: int) -> Sprite:
         """Draw a mark on a soft shade, which separates it from its arrow."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from dancetutor_cli.film.overlay.blit import Ink, blit
+from dancetutor_cli.film.overlay.blit import Ink, draw_sprite
 
 
 def _slow(frame, sprite, x, y, fraction, opacity, gain):
@@ -37,5 +37,5 @@ def test_sprites_are_blended_as_the_formula_says(at, fraction, opacity, gain):
     sprite[2:6, 2:6, 3], sprite[6:8, :, 3] = 255, 0
     sprite[6:8] = 0
     expected = _slow(frame, sprite, *at, fraction, round(256 * opacity), round(256 * gain))
-    blit(frame, sprite, at[0], at[1] + fraction / 256, Ink(opacity, gain))
+    draw_sprite(frame, sprite, at[0], at[1] + fraction / 256, Ink(opacity, gain))
     np.testing.assert_array_equal(frame, expected)

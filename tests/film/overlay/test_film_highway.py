@@ -15,7 +15,7 @@ from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import load_layout
 from dancetutor_cli.film.notes import QUANTISATIONS, Callout, PanelLights, Presses, quantisation
 from dancetutor_cli.film.overlay import sprites
-from dancetutor_cli.film.overlay.blit import Run, blit, rectangle, strip
+from dancetutor_cli.film.overlay.blit import Run, draw_rectangle, draw_sprite, fill_run
 from dancetutor_cli.film.overlay.text import Typeface
 from dancetutor_cli.film.scroll import parse_scroll
 from dancetutor_cli.run.errors import FileError, UsageError
@@ -26,7 +26,7 @@ from dancetutor_cli.run.yaml_files import load
 def test_a_sprite_between_pixels_is_shared_by_both() -> None:
     frame = np.zeros((6, 3, 3), dtype=np.uint8)
     sprite = np.full((2, 1, 4), 255, dtype=np.uint8)
-    blit(frame, sprite, 1, 1.25)
+    draw_sprite(frame, sprite, 1, 1.25)
     column = frame[:, 1, 0].astype(int)
     assert column.tolist() == [0, 191, 255, 64, 0, 0] or abs(column - [0, 191, 255, 64, 0, 0]).max() <= 1
     assert not frame[:, [0, 2]].any()
@@ -36,19 +36,19 @@ def test_sprites_are_cut_at_edges_and_rows() -> None:
     frame = np.zeros((5, 5, 3), dtype=np.uint8)
     sprite = np.full((4, 4, 4), 255, dtype=np.uint8)
     for x, y in ((-2, -2), (3, 3), (-9, 0), (0, 99)):
-        blit(frame, sprite, x, y)
+        draw_sprite(frame, sprite, x, y)
     assert frame[:2, :2].all() and frame[3:, 3:].all() and not frame[2].any()
     frame[:] = 0
-    blit(frame, sprite, 0, 0.5, rows=(2, 4))
+    draw_sprite(frame, sprite, 0, 0.5, rows=(2, 4))
     assert not frame[:2].any() and frame[2:4, :4].all() and not frame[4].any()
 
 
 def test_half_opacity_is_half_way_and_strips_cover_their_share() -> None:
     frame = np.full((4, 1, 3), 100, dtype=np.uint8)
-    strip(frame, np.full((2, 1, 4), 255, dtype=np.uint8), 0, Run(1.5, 3.0, 0.0))
+    fill_run(frame, np.full((2, 1, 4), 255, dtype=np.uint8), 0, Run(1.5, 3.0, 0.0))
     assert frame[:, 0, 0].tolist() == [100, 178, 255, 100]
     frame[:] = 100
-    rectangle(frame, (0, 0, 1, 2), (200, 200, 200), 0.5)
+    draw_rectangle(frame, (0, 0, 1, 2), (200, 200, 200), 0.5)
     assert frame[:, 0, 0].tolist() == [150, 150, 100, 100]
 
 
