@@ -108,11 +108,11 @@ def _ffmpeg() -> Check:
 
 
 def _encoder(name: str) -> Check:
-    from dancetutor_cli.film.media.encoder import works
+    from dancetutor_cli.film.media.encoder import encoder_problem
     from dancetutor_cli.run.ffmpeg import MEND
 
     label = f"encoder {name}"
-    failure = works(ENCODERS[name])
+    failure = encoder_problem(ENCODERS[name])
     if failure is None:
         return Check(label, "ok", f"{ENCODERS[name]} encodes a frame")
     if name in _NEEDED:

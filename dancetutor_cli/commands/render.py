@@ -27,7 +27,7 @@ from dancetutor_cli.commands.shared_options import (
     verbose_option,
     yes_option,
 )
-from dancetutor_cli.film.media.encoder import FILES, FORMATS, PICTURES, Encoding, choose, target_of
+from dancetutor_cli.film.media.encoder import FILES, FORMATS, PICTURES, Encoding, choose_encoder, target_of
 from dancetutor_cli.reports.progress import FilmProgress
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import check_file, check_folder, make_folder, one_of, place_of, plain_name
@@ -238,7 +238,7 @@ def _make(request: FilmRequest, subject: FilmSubject, target: Path, kind: str, o
         what = f"{subject.clock.seconds:.0f} s of .{kind} make a very large file"
         note(f"{what}; choose a part with --section, or write .mp4")
     if encoding.format.h264:
-        encoding = replace(encoding, encoder=choose(options.encoder))
+        encoding = replace(encoding, encoder=choose_encoder(options.encoder))
     poses = options.poses is not None
     place = target if kind == PICTURES else place_of(target)
     job = FilmJob(request, subject.chart.label, place, encoding, None, poses, options.poster, options.srt)

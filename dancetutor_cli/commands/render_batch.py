@@ -69,7 +69,7 @@ def render_batch(path: Path, selection: Selection, dance: DanceOptions, options:
 
 def _batch(path: Path, selection: Selection, dance: DanceOptions, options: RenderOptions) -> BatchRequest:
     """Return the request of the charts below `path`, with the format and the output folder of the options."""
-    from dancetutor_cli.film.media.encoder import FORMATS, PICTURES, Encoding, choose
+    from dancetutor_cli.film.media.encoder import FORMATS, PICTURES, Encoding, choose_encoder
     from dancetutor_cli.film.work.batch import DEFAULT_NAME, BatchRequest, parse_meters, parse_shard
 
     frames = options.frames
@@ -77,7 +77,7 @@ def _batch(path: Path, selection: Selection, dance: DanceOptions, options: Rende
     target = frames or options.output or Path("videos")
     request = film_request(path, selection, dance, options, FORMATS[kind])
     look = request.look
-    encoder = choose(options.encoder) if frames is None else "x264"
+    encoder = choose_encoder(options.encoder) if frames is None else "x264"
     return BatchRequest(
         paths=(path,),
         request=request,

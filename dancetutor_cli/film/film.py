@@ -14,7 +14,15 @@ from dancetutor_cli.film.notes import PanelLights, lighting
 from dancetutor_cli.film.overlay import footer, marks, sprites
 from dancetutor_cli.film.overlay.announce import Runs
 from dancetutor_cli.film.overlay.blit import Box
-from dancetutor_cli.film.overlay.diagram import FeetDiagram, Lettering, NextRows, PadMap, PadView, below, name_sprite
+from dancetutor_cli.film.overlay.diagram import (
+    FeetDiagram,
+    Lettering,
+    NextRows,
+    PadMap,
+    PadView,
+    box_below,
+    name_sprite,
+)
 from dancetutor_cli.film.overlay.header import Lines
 from dancetutor_cli.film.overlay.highway import Highway, Score
 from dancetutor_cli.film.overlay.marks import HighwayGeometry, lane_width_for_words
@@ -153,7 +161,7 @@ class Film:
         if feet:
             rims = self.style.players if plan.dancers > 1 else (sprites.WHITE,)
             now = name_sprite(self.language.film["now"], self.face, self.scale) if after else None
-            large = FeetDiagram(PadMap(view, below(feet, now)), self.lights, self.face, rims, now)
+            large = FeetDiagram(PadMap(view, box_below(feet, now)), self.lights, self.face, rims, now)
         if after and plan.rows is not None:
             box = self.boxes.box("next")
             small = NextRows(plan.rows, view, box, after.count, Lettering(self.face, self.scale, self.language.film))

@@ -127,7 +127,7 @@ class Phrase(NamedTuple):
         return self.several.replace("{move}", self.move).replace("{count}", str(count)).replace("{said}", self.text)
 
 
-def plain(text: str) -> Phrase:
+def plain_phrase(text: str) -> Phrase:
     """Return a phrase that uses the same words everywhere."""
     return Phrase(text, text, short_words(text))
 
@@ -142,7 +142,7 @@ def stepped_phrase(move: str, name: str, limbs: list[int], language: Language) -
     feet = {limb for limb in limbs if limb in (0, 1)}
     text = language.calls.get(name)
     if text is None or len(feet) != 1:
-        return plain(move)
+        return plain_phrase(move)
     return Phrase(move, text.replace("{who}", language.limbs[LABELS[feet.pop()]]), short_words(move))
 
 
@@ -160,11 +160,11 @@ def crossing_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Languag
         ahead = np.asarray(pad.panels)[play.feet[row]][:, 1]
         name, foot = JUMP, int(np.argmax(ahead))
         if ahead[0] == ahead[1]:
-            return plain(move)
+            return plain_phrase(move)
     else:
         names = [name for name in (FRONT, BACK) if name in play.moves[row]]
         if not feet or not names:
-            return plain(move)
+            return plain_phrase(move)
         (foot,), name = feet, names[0]
     who, other = language.limbs[LABELS[foot]], language.limbs[LABELS[1 - foot]]
     reason = "" if name == JUMP else _reason(play, row, foot)
@@ -183,10 +183,10 @@ def turning_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Language
     (play, row), calls = at, language.calls
     feet = [foot for foot in (0, 1) if foot in play.limb[row]]
     if not feet or (play.feet[row] < 0).any():
-        return plain(move)
+        return plain_phrase(move)
     ahead = np.asarray(pad.panels)[play.feet[row]][:, 1]
     if len(feet) == 2 and ahead[0] == ahead[1]:
-        return plain(move)
+        return plain_phrase(move)
     foot = feet[0] if len(feet) == 1 else int(np.argmax(ahead))
     over = float(ahead[foot] - ahead[1 - foot])
     name = TURN_FRONT if over > 0 else TURN_BEHIND if over < 0 else TURN_ROUND

@@ -35,11 +35,11 @@ def test_everything_a_film_needs_is_looked_at() -> None:
 def test_a_hardware_encoder_is_tried_and_not_believed(monkeypatch: pytest.MonkeyPatch) -> None:
     tried = []
 
-    def works(encoder: str) -> str | None:
+    def encoder_problem(encoder: str) -> str | None:
         tried.append(encoder)
         return None if encoder in ("libx264", "aac") else "no such device"
 
-    monkeypatch.setattr(probe, "works", works)
+    monkeypatch.setattr(probe, "encoder_problem", encoder_problem)
     found = by_name()
     assert {"h264_nvenc", "h264_vaapi"} <= set(tried)
     assert found["encoder nvenc"] == Check(
@@ -49,11 +49,11 @@ def test_a_hardware_encoder_is_tried_and_not_believed(monkeypatch: pytest.Monkey
         "an NVIDIA GPU and its driver; x264 needs neither",
     )
     monkeypatch.setattr(probe, "_has_cuda", lambda: True)
-    assert probe.choose("auto") == "x264"
+    assert probe.choose_encoder("auto") == "x264"
     with pytest.raises(UnavailableError, match="vaapi does not work here: no such device"):
-        probe.choose("vaapi")
-    monkeypatch.setattr(probe, "works", lambda encoder: None)
-    assert probe.choose("auto") == "nvenc" and probe.choose("vaapi") == "vaapi"
+        probe.choose_encoder("vaapi")
+    monkeypatch.setattr(probe, "encoder_problem", lambda encoder: None)
+    assert probe.choose_encoder("auto") == "nvenc" and probe.choose("vaapi") == "vaapi"
 
 
 def test_without_ffmpeg_there_are_no_films(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
@@ -69,7 +69,9 @@ def test_without_ffmpeg_there_are_no_films(monkeypatch: pytest.MonkeyPatch, caps
 def test_lines_are_short_and_the_repair_is_below(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(probe, "works", lambda encoder: None if encoder in ("libx264", "aac") else "no device")
+    monkeypatch.setattr(
+        probe, "encoder_problem", lambda encoder: None if encoder in ("libx264", "aac") else "no device"
+    )
     with pytest.raises(SystemExit) as stop:
         main(["doctor"])
     assert stop.value.code == 0

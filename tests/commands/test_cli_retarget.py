@@ -138,7 +138,7 @@ def test_the_film_has_all_its_frames(bvh: Path, tmp_path: Path, monkeypatch: pyt
         join(parts, encoding, sound, work, output)
 
     monkeypatch.setattr(motion_film, "SIZE", (64, 64))
-    monkeypatch.setattr(motion_film, "join", joining)
+    monkeypatch.setattr(motion_film, "join_segments", joining)
     film = tmp_path / "a.mp4"
     assert "31 frames, 1.0 s" in run(bvh, "-o", film, "--correct", "none")
     data = film.read_bytes()

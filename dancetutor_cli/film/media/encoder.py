@@ -134,7 +134,7 @@ _BEFORE_ENCODER: dict[str, tuple[str, ...]] = {"h264_vaapi": ("-vf", "format=nv1
 _SOUND = ("aac",)
 
 
-def works(encoder: str) -> str | None:
+def encoder_problem(encoder: str) -> str | None:
     """Return None if ffmpeg encodes a frame (or a moment of sound) with this encoder, otherwise the reason."""
     source = "anullsrc=d=0.1" if encoder in _SOUND else "color=size=256x144:duration=0.04:rate=25"
     arguments = ("-f", "lavfi", "-i", source, *_BEFORE_ENCODER.get(encoder, ()))
@@ -146,7 +146,7 @@ def works(encoder: str) -> str | None:
     return None
 
 
-def choose(wanted: str) -> Encoder:
+def choose_encoder(wanted: str) -> Encoder:
     """Choose the encoder: "auto" takes NVENC if it works, otherwise x264.
 
     UnavailableError if the wanted encoder does not work.
@@ -154,9 +154,9 @@ def choose(wanted: str) -> Encoder:
     if wanted == "x264":
         return "x264"
     if wanted == "auto":
-        return "nvenc" if _has_cuda() and works("h264_nvenc") is None else "x264"
+        return "nvenc" if _has_cuda() and encoder_problem("h264_nvenc") is None else "x264"
     name: Encoder = "nvenc" if wanted == "nvenc" else "vaapi"
-    failure = works(f"h264_{name}")
+    failure = encoder_problem(f"h264_{name}")
     if failure is not None:
         raise UnavailableError(f"the encoder {wanted} does not work here: {failure}; use --encoder x264")
     return name
@@ -260,7 +260,7 @@ def save_picture(frame: Frame, path: Path) -> None:
         raise FileError(path, f"cannot be written: {error.strerror or error}") from error
 
 
-def join(segments: Sequence[Path], encoding: Encoding, sound: Path | None, work: Path, output: Path) -> None:
+def join_segments(segments: Sequence[Path], encoding: Encoding, sound: Path | None, work: Path, output: Path) -> None:
     """Make a film of its segments and its sound, a WAV file or None; work : a folder for temporary files."""
     listing = work / "segments.txt"
     lines = (f"file '{_quoted(segment)}'" for segment in segments)

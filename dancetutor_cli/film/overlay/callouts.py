@@ -24,7 +24,7 @@ from dancetutor_cli.film.words import (
     Phrase,
     crossing_phrase,
     fill_words,
-    plain,
+    plain_phrase,
     short_words,
     stepped_phrase,
     turning_phrase,
@@ -224,9 +224,9 @@ def _called_moves(
     under = {} if style.findings else {notice.tick: notice.text for notice in notices if notice.rule == _OF_MINES}
     found = list(_moves(about.pad, play, style, why))
     if style.findings:
-        found += (_Move(notice.tick, notice.tick, plain(notice.text), notice.weight) for notice in notices)
+        found += (_Move(notice.tick, notice.tick, plain_phrase(notice.text), notice.weight) for notice in notices)
     mine = style.words.get(MINE, "")
-    found += (_Move(tick, tick, plain(mine + (f" ({under[tick]})" if tick in under else ""))) for tick in mined)
+    found += (_Move(tick, tick, plain_phrase(mine + (f" ({under[tick]})" if tick in under else ""))) for tick in mined)
     return found
 
 
@@ -273,7 +273,7 @@ def _moves(pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[in
                 if kind != FULL:
                     phrase = crossing_phrase(words[kind], (play, row), pad, style.language)
                 else:  # the first row's call has said that it is a crossover
-                    phrase = plain(words[kind] if row == span.first else short_words(words[kind]))
+                    phrase = plain_phrase(words[kind] if row == span.first else short_words(words[kind]))
                 yield _Move(ticks[row], ticks[span.last], phrase)
     for row, names in enumerate(turns):
         named = {n for n in names if n in words and n not in CROSSED}
@@ -288,7 +288,7 @@ def _moves(pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[in
                 yield _Move(ticks[row], ticks[row], stepped_phrase(words[name], name, limbs, style.language))
                 continue
             for text in fill_words(words[name], name, (play, row), PanelNames(pad, style.turned, style.language)):
-                yield _Move(ticks[row], ticks[row], plain(text + reason))
+                yield _Move(ticks[row], ticks[row], plain_phrase(text + reason))
 
 
 def _jumps(play: Play) -> list[int]:

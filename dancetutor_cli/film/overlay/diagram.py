@@ -203,7 +203,7 @@ class FeetDiagram:
         """
         self.pads.draw(frame, [self.lights.at(column, second) for column in range(len(self.pads.panels))], opacity)
         if self.name is not None:
-            blit.draw_sprite(frame, self.name, *above(self.pads, self.name), opacity)
+            blit.draw_sprite(frame, self.name, *corner_above(self.pads, self.name), opacity)
         for number, foot in enumerate(feet):
             if foot is None:
                 continue
@@ -224,18 +224,18 @@ def name_sprite(name: str, face: Typeface, scale: float) -> Sprite:
     return face.sprite(name, text, NAMES, weight=text / 90)
 
 
-def below(box: PixelBox, name: Sprite | None) -> PixelBox:
+def box_below(box: PixelBox, name: Sprite | None) -> PixelBox:
     """Return the part of a pad's box that is below the pad's name."""
     return box if name is None else (box[0], box[1] + name.shape[0], box[2], box[3])
 
 
-def above(pads: PadMap, name: Sprite) -> tuple[float, float]:
+def corner_above(pads: PadMap, name: Sprite) -> tuple[float, float]:
     """Return left and top of a name that stands in the middle above its pad, pixels."""
     left, top, right, _ = pads.edges
     return (left + right - name.shape[1]) / 2, int(top) - name.shape[0]
 
 
-def cut(box: PixelBox, count: int, axis: int) -> list[PixelBox]:
+def cut_box(box: PixelBox, count: int, axis: int) -> list[PixelBox]:
     """Cut a box into `count` equal parts with gaps: beside each other for axis 0, below each other for axis 1."""
     low, high = box[axis], box[axis + 2]
     gap = round((0.04 if axis == 0 else 0.06) * (high - low))
@@ -278,7 +278,7 @@ class NextRows:
         self.names = {name: name_sprite(words[name], face, scale) for name in (*IN_TURN, AGAIN)}
         wide, high = (max(name.shape[axis] for name in self.names.values()) for axis in (1, 0))
         while True:
-            beside, below = cut(box, count, 0), cut(box, count, 1)
+            beside, below = cut_box(box, count, 0), cut_box(box, count, 1)
             above = [PadMap(view, (a, b + high, c, d)) for a, b, c, d in beside]
             left = [PadMap(view, (a + wide + 2, b, c, d)) for a, b, c, d in below]
             self.pads = max(above, left, key=lambda pads: pads[0].unit)
@@ -313,7 +313,7 @@ class NextRows:
         """Return the top left corner of a pad's name, which stands in the middle above the pad or on its left."""
         left, top, _, bottom = pads.edges
         if self._above:
-            return above(pads, name)
+            return corner_above(pads, name)
         return left - name.shape[1] - 2, round((top + bottom - name.shape[0]) / 2)
 
     def _mark(self, frame: Frame, pads: PadMap, column: int, limb: int, share: float) -> None:

@@ -16,7 +16,7 @@ from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.film.layout import PixelBox, lowered
 from dancetutor_cli.film.overlay.blit import Box, Sprite, draw_sprite
 from dancetutor_cli.film.overlay.sprites import SOFT, WHITE, WordStyle, box_of, plate
-from dancetutor_cli.film.overlay.text import LONGEST, Typeface, clean, fit_text, in_lines
+from dancetutor_cli.film.overlay.text import LONGEST, Typeface, clean, fit_text, lay_in_lines
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.run.languages import Language
 
@@ -209,7 +209,7 @@ def _fits(
         if fits >= least * size:
             return lines, fits
     least, most = ways[-1]
-    return in_lines(text, least * size, width, face, most), least * size
+    return lay_in_lines(text, least * size, width, face, most), least * size
 
 
 # The words of the picture, made from a song and a chart with the letters that the font has.

@@ -17,7 +17,7 @@ from dancetutor_cli.film.notes import Callout, NoteTrack
 from dancetutor_cli.film.overlay import sprites
 from dancetutor_cli.film.overlay.blit import Sprite, draw_sprite
 from dancetutor_cli.film.overlay.sprites import FLAG_EDGE
-from dancetutor_cli.film.overlay.text import Typeface, fit_text, narrowest
+from dancetutor_cli.film.overlay.text import Typeface, fit_text, narrowest_width
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.film.words import short_words
 
@@ -342,7 +342,7 @@ def room_for(tags: Iterable[str], size: float, face: Typeface) -> float:
     size : size of the letters
     """
     phrases = {phrase for tag in tags for phrase in tag.split(", ")}
-    widest = max((narrowest(phrase, size, face, LINES) for phrase in phrases), default=0.0)
+    widest = max((narrowest_width(phrase, size, face, LINES) for phrase in phrases), default=0.0)
     return widest + FLAG_EDGE * size + LABEL
 
 

@@ -307,7 +307,7 @@ def _wide_before(word: str, k: int) -> bool:
     return unicodedata.east_asian_width(word[k - 1]) in "WF"
 
 
-def in_lines(text: str, size: float, width: float, face: Typeface, most: int) -> list[str]:
+def lay_in_lines(text: str, size: float, width: float, face: Typeface, most: int) -> list[str]:
     """Lay a text in at most `most` lines of at most `width` pixels; an ellipsis ends the last line of a longer text."""
     lines = _laid(parts_of(text), size, width, face, most + 1)
     if len(lines) > most:
@@ -337,7 +337,7 @@ def fit_text(text: str, size: float, width: float, face: Typeface, most: int = 4
         size = max(LEAST, 0.96 * size)
 
 
-def narrowest(text: str, size: float, face: Typeface, most: int) -> float:
+def narrowest_width(text: str, size: float, face: Typeface, most: int) -> float:
     """Return the width, pixels, that a text needs at this size in at most `most` lines."""
     parts = parts_of(text)
     width = max(face.width(part.lstrip(), size) for part in parts)

@@ -107,7 +107,7 @@ def _axes(position: tuple[float, float, float], target: tuple[float, float, floa
     return axes
 
 
-def preset(
+def preset_camera(
     name: str, extent: tuple[Array, Array], size: tuple[int, int], look: Look, region: Region = WHOLE, tall: float = 0.0
 ) -> Camera:
     """Return a camera by name that shows the whole dancer, jumping and with her arms up, in a part of the picture.
@@ -145,7 +145,7 @@ def preset(
     return replace(camera, feet_only=settings.feet_only)
 
 
-def free(
+def free_camera(
     position: tuple[float, float, float],
     target: tuple[float, float, float],
     look: Look,
@@ -162,14 +162,14 @@ def free(
     return camera
 
 
-def parse(
+def parse_camera(
     text: str, extent: tuple[Array, Array], size: tuple[int, int], look: Look, region: Region = WHOLE, tall: float = 0.0
 ) -> Camera:
     """Parse a camera of the command line: a preset's name, or ``x,y,z/x,y,z``, position and target in metres."""
     if _is_name(text):
-        return preset(text, extent, size, look, region, tall)
+        return preset_camera(text, extent, size, look, region, tall)
     (a, b, c), (d, e, f) = _points(text)
-    return free((a, b, c), (d, e, f), look, region)
+    return free_camera((a, b, c), (d, e, f), look, region)
 
 
 def is_front_view(text: str, look: Look) -> bool:

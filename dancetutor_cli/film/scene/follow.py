@@ -14,7 +14,7 @@ import numpy as np
 
 from dancetutor_cli.character.mesh import rest_vertices
 from dancetutor_cli.dance.units import Array
-from dancetutor_cli.film.scene.camera import WHOLE, Camera, Region, preset, with_pan_range
+from dancetutor_cli.film.scene.camera import WHOLE, Camera, Region, preset_camera, with_pan_range
 from dancetutor_cli.film.scene.scene import PANEL, Scene
 
 _STEP = 1.0 / 30.0  # seconds between the places that are smoothed
@@ -80,7 +80,7 @@ def _nearer(scene: Scene, name: str, size: tuple[int, int], region: Region) -> C
     middle, half = (low + high) / 2, 1.5 * PANEL
     square = low.copy(), high.copy()
     square[0][0], square[1][0] = middle[0] - half, middle[0] + half
-    return preset(name, square, size, scene.look, region, scene.dancer_height)
+    return preset_camera(name, square, size, scene.look, region, scene.dancer_height)
 
 
 def _along(scene: Scene, camera: Camera, size: tuple[int, int], across: Array) -> tuple[Camera, Array]:

@@ -14,7 +14,7 @@ from dancetutor_cli.dance.units import PANEL as PANEL
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import LimbColours, limb_colours
 from dancetutor_cli.film.picture import PadLike
-from dancetutor_cli.film.scene.camera import WHOLE, Camera, Region, parse
+from dancetutor_cli.film.scene.camera import WHOLE, Camera, Region, parse_camera
 from dancetutor_cli.film.scene.look import Look, StageLook, default_look
 from dancetutor_cli.run.errors import UsageError
 
@@ -157,7 +157,7 @@ class Scene:
 
     def camera(self, text: str, size: tuple[int, int], region: Region = WHOLE) -> Camera:
         """Return a camera by name or ``x,y,z/x,y,z`` for a picture of that size; the dancer fills `region` (0..1)."""
-        return parse(text, self.extent, size, self.look, region, self.dancer_height)
+        return parse_camera(text, self.extent, size, self.look, region, self.dancer_height)
 
     @property
     def dancer_height(self) -> float:

@@ -255,16 +255,16 @@ def joint_boxes(positions: NDArray[Any], joints: NDArray[Any], weights: NDArray[
     return JointBoxes(joint, np.stack([ends[corner[:, k], joint[:, None], k] for k in range(3)], axis=-1))
 
 
-def places_of(held: JointBoxes, matrices: Array) -> Array:
+def hull_points(held: JointBoxes, matrices: Array) -> Array:
     """Return world points (n, 3) whose hull holds the dancer. matrices : (j, 3, 4), from binding pose to world"""
     turn = matrices[held.joint]
     return np.asarray(held.corners @ turn[:, :, :3].transpose(0, 2, 1) + turn[:, None, :, 3]).reshape(-1, 3)
 
 
-def within(light: Array, places: Array) -> Array:
+def shadow_part(light: Array, places: Array) -> Array:
     """Return the part of the shadow map that holds the dancer: left, top, right and bottom from 0 to 1, (4,).
 
-    light : `light_matrix`; places : `places_of`
+    light : `light_matrix`; places : `hull_points`
     """
     there = (places @ light[:2, :3].T + light[:2, 3]) * 0.5 + 0.5
     return np.concatenate([there.min(0), there.max(0)])

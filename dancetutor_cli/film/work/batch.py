@@ -293,7 +293,7 @@ class Batch:
             if isinstance(film.error, EncoderError):
                 film.error = FileError(film.job.output, str(film.error))
         seconds = time.monotonic() - film.began
-        return film_jobs.outcome(film.job, film.opened, film.error, seconds)
+        return film_jobs.outcome_of(film.job, film.opened, film.error, seconds)
 
     def _remove_useless(self, film: _Film) -> None:
         """Remove the folder of an unfinished film, if no later run can use it."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.film.clock import PictureClock
-from dancetutor_cli.film.media.encoder import PICTURES, Encoding, join
+from dancetutor_cli.film.media.encoder import PICTURES, Encoding, join_segments
 from dancetutor_cli.film.work.request import FilmRequest, film_key, look_up
 from dancetutor_cli.film.work.segments import (
     FilmRecord,
@@ -111,7 +111,7 @@ class FilmOutcome:
         }
 
 
-def outcome(job: FilmJob, opened: OpenedFilm | None, error: DancetutorError | None, seconds: float) -> FilmOutcome:
+def outcome_of(job: FilmJob, opened: OpenedFilm | None, error: DancetutorError | None, seconds: float) -> FilmOutcome:
     """Return the outcome of a job."""
     if error is not None:
         return FilmOutcome(job, "failed", error, () if opened is None else opened.warnings, 0, seconds)
@@ -216,7 +216,7 @@ def close_film(job: FilmJob, opened: OpenedFilm, digests: dict[int, str]) -> Clo
                 raise FileError(part.path, "was changed by another program while the film was made; run it again")
     warnings = []
     try:
-        finish(list(opened.parts), job.encoding, opened.sound and opened.sound_file, opened.folder, job.output)
+        finish_film(list(opened.parts), job.encoding, opened.sound and opened.sound_file, opened.folder, job.output)
         if job.poster is not None or job.srt:
             assert opened.plan is not None
             film = load_film(opened.plan)
@@ -239,14 +239,14 @@ def write_sound(sound: SoundPlan, clock: Clock, path: Path) -> None:
     write_wav(mix(sound, clock), path)
 
 
-def finish(parts: list[Segment], encoding: Encoding, sound: Path | None, folder: Path, output: Path) -> None:
+def finish_film(parts: list[Segment], encoding: Encoding, sound: Path | None, folder: Path, output: Path) -> None:
     """Join the segments and move the result to its place."""
     if encoding.target == PICTURES:
         _place_pictures(parts[0].path, output)
         return
     output = place_of(output)  # a link stays a link, and the film is written to its target
     film = folder / f"film.{encoding.target}"
-    join([part.path for part in parts], encoding, sound, folder, film)
+    join_segments([part.path for part in parts], encoding, sound, folder, film)
     try:
         film.replace(output)
     except OSError as error:

@@ -16,7 +16,7 @@ from dancetutor_cli.dance.motion import sample
 from dancetutor_cli.dance.rig.body import joint_matrices
 from dancetutor_cli.dance.smoothing import low_pass, sample_path
 from dancetutor_cli.dance.units import Array
-from dancetutor_cli.film.media.encoder import Encoding, encode_segment, join
+from dancetutor_cli.film.media.encoder import Encoding, encode_segment, join_segments
 from dancetutor_cli.film.overlay.text import font
 from dancetutor_cli.film.scene import renderer
 from dancetutor_cli.film.scene.camera import Camera
@@ -84,7 +84,7 @@ def write_motion_film(path: Path, character: Character, motion: Motion, comparis
     with work_folder(path) as folder:
         part, whole = folder / f"part{encoding.format.segment}", folder / "film.mp4"
         encode_segment(frames(character, motion, count, comparison), encoding, part)
-        join([part], encoding, None, folder, whole)
+        join_segments([part], encoding, None, folder, whole)
         whole.replace(path)
     return count
 

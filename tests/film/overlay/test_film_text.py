@@ -18,7 +18,7 @@ from dancetutor_cli.film.overlay import text
 from dancetutor_cli.film.overlay.footer import Legend, LegendWords
 from dancetutor_cli.film.overlay.header import Header, Words, WordsRoom
 from dancetutor_cli.film.overlay.sprites import WordStyle, highway_style
-from dancetutor_cli.film.overlay.text import Typeface, clean, fit_text, in_lines, parts_of, system_fonts, wrap_words
+from dancetutor_cli.film.overlay.text import Typeface, clean, fit_text, lay_in_lines, parts_of, system_fonts, wrap_words
 from dancetutor_cli.run.languages import load_language
 from dancetutor_cli.run.reading import config_names
 
@@ -178,7 +178,7 @@ def test_scripts_without_blanks_break_between_letters_but_not_before_what_closes
     assert "".join(parts_of("高気圧ねこロック 〜ずっと")) == "高気圧ねこロック 〜ずっと"
     face = Typeface()
     title = "高気圧ねこロック"
-    lines = in_lines(title, 20, face.width(title, 20) / 2 + 1, face, 2)
+    lines = lay_in_lines(title, 20, face.width(title, 20) / 2 + 1, face, 2)
     assert len(lines) == 2 and "".join(lines) == title
 
 

@@ -9,7 +9,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dancetutor_cli.film.layout import load_layout
-from dancetutor_cli.film.scene.camera import Camera, free, is_front_view, parse, preset, with_pan_range
+from dancetutor_cli.film.scene.camera import (
+    Camera,
+    free_camera,
+    is_front_view,
+    parse_camera,
+    preset_camera,
+    with_pan_range,
+)
 from dancetutor_cli.film.scene.look import default_look, read_look
 from dancetutor_cli.run.errors import FileError, UsageError
 from dancetutor_cli.run.reading import config_path
@@ -47,7 +54,7 @@ def test_presets_show_all_of_her_at_any_aspect(name, kind, pad, size):
 @pytest.mark.parametrize("name", BODY_CAMERAS)
 def test_presets_are_as_near_as_they_can_be(name):
     size = (1280, 720)
-    camera = preset(name, PAD, size, LOOK)
+    camera = preset_camera(name, PAD, size, LOOK)
     head_to_pad = camera.project(np.array([[0.0, 1.7, 0.0], [0.0, 0.0, 0.0]]), size)[:, 1]
     assert head_to_pad[1] - head_to_pad[0] > 0.5 * size[1]
 
@@ -55,7 +62,7 @@ def test_presets_are_as_near_as_they_can_be(name):
 def test_left_is_left_from_the_back_and_right_from_the_front():
     left_panel = np.array([[0.28, 0.0, 0.0]])
     for name, side in (("back", -1), ("front", 1), ("top", -1)):
-        x = preset(name, PAD, (1280, 720), LOOK).project(left_panel, (1280, 720))[0, 0]
+        x = preset_camera(name, PAD, (1280, 720), LOOK).project(left_panel, (1280, 720))[0, 0]
         assert (x - 640) * side > 50
 
 
@@ -101,7 +108,7 @@ def test_three_quarter_shows_her_face(steps, kind):
 def test_from_the_front_the_pad_is_turned(text, turned):
     """Arrows turn with the pad where, and only where, her left panel is on the right of the picture."""
     assert is_front_view(text, LOOK) == turned
-    camera = parse(text, PAD, (1280, 720), LOOK)
+    camera = parse_camera(text, PAD, (1280, 720), LOOK)
     left, right = camera.project(np.array([[0.28, 0.0, 0.0], [-0.28, 0.0, 0.0]]), (1280, 720))[:, 0]
     if abs(left - right) > 100:
         assert (left > right) == turned
@@ -110,14 +117,14 @@ def test_from_the_front_the_pad_is_turned(text, turned):
 def test_the_screen_side_is_far_from_the_back_and_up_from_the_top():
     up, down = np.array([[0.0, 0.0, 0.28]]), np.array([[0.0, 0.0, -0.28]])
     for name in ("back", "top"):
-        camera = preset(name, PAD, (1280, 720), LOOK)
+        camera = preset_camera(name, PAD, (1280, 720), LOOK)
         assert camera.project(up, (1280, 720))[0, 1] < camera.project(down, (1280, 720))[0, 1] - 50
 
 
 def test_a_region_moves_the_dancer_but_not_the_rest():
     size = (1280, 720)
     region = (0.0, 0.1, 0.6, 0.9)
-    camera = preset("back", PAD, size, LOOK, region)
+    camera = preset_camera("back", PAD, size, LOOK, region)
     places = camera.project(np.array([[0.0, 0.0, -0.42], [0.0, 1.7, 0.0], [0.7, 1.4, 0.0], [-0.7, 1.4, 0.0]]), size)
     assert (places[:, 0] > 0).all() and (places[:, 0] < 0.6 * 1280).all()
     assert (places[:, 1] > 72 - 1).all() and (places[:, 1] < 0.9 * 720 + 1).all()
@@ -135,7 +142,7 @@ def test_matrix_agrees_with_similar_triangles():
 def test_axes_are_orthonormal_and_upright(position, target):
     if np.linalg.norm(np.subtract(position, target)) < 0.01:
         return
-    axes = free(position, target, LOOK).axes()
+    axes = free_camera(position, target, LOOK).axes()
     np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=1e-9)
     assert axes[1, 1] >= -1e-9  # up is up
     # Right-handed seen along the view: right x up points back to the camera.
@@ -143,17 +150,17 @@ def test_axes_are_orthonormal_and_upright(position, target):
 
 
 def test_straight_down_has_the_screen_side_up():
-    axes = free((0.0, 3.0, 0.0), (0.0, 0.0, 0.0), LOOK).axes()
+    axes = free_camera((0.0, 3.0, 0.0), (0.0, 0.0, 0.0), LOOK).axes()
     np.testing.assert_allclose(axes, [[-1, 0, 0], [0, 0, 1], [0, -1, 0]], atol=1e-12)
 
 
 def test_a_free_camera_puts_its_target_into_the_middle():
-    camera = parse("1.5,1.8,-4/0.2,0.9,0", PAD, (640, 360), LOOK)
+    camera = parse_camera("1.5,1.8,-4/0.2,0.9,0", PAD, (640, 360), LOOK)
     np.testing.assert_allclose(camera.project(np.array([[0.2, 0.9, 0.0]]), (640, 360))[0, :2], [320, 180])
 
 
 def test_pan_moves_by_whole_pixels_within_its_range():
-    camera = with_pan_range(preset("back", PAD, (200, 100), LOOK), -0.25, 0.1)
+    camera = with_pan_range(preset_camera("back", PAD, (200, 100), LOOK), -0.25, 0.1)
     point = np.array([[0.1, 0.2, 0.3]])
     still = camera.project(point, (200, 100))[0]
     for pan, pixels in ((0.0, 0), (0.052, 10), (-0.2, -40), (0.5, 20), (-0.9, -50)):
@@ -168,12 +175,12 @@ def _fields(camera):
 @pytest.mark.parametrize("text", ["behind", "1,2,3", "1,2/3,4,5", "1,2,x/0,0,0", "1,2,nan/0,0,0", "1,2,3/1,2,3"])
 def test_bad_cameras_are_usage_errors(text):
     with pytest.raises(UsageError):
-        parse(text, PAD, (640, 360), LOOK)
+        parse_camera(text, PAD, (640, 360), LOOK)
 
 
 def test_an_unknown_camera_lists_those_that_exist():
     with pytest.raises(UsageError, match=", ".join(LOOK.cameras)):
-        parse("behind", PAD, (640, 360), LOOK)
+        parse_camera("behind", PAD, (640, 360), LOOK)
 
 
 @pytest.mark.parametrize(

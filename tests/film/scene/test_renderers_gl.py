@@ -19,7 +19,7 @@ from dancetutor_cli.film.scene.camera import with_pan_range
 from dancetutor_cli.film.scene.geometry import pack
 from dancetutor_cli.film.scene.gl import available
 from dancetutor_cli.film.scene.scene import Scene
-from dancetutor_cli.film.scene.shared import joint_boxes, places_of, skin_matrices
+from dancetutor_cli.film.scene.shared import hull_points, joint_boxes, skin_matrices
 from dancetutor_cli.run.errors import UnavailableError
 
 SIZE = (640, 360)
@@ -176,7 +176,7 @@ def test_boxes_on_her_joints_hold_her_closely_in_any_pose(kind):
     scene = Scene(load_dancer(), rs.scene().pad)
     mesh = pack(scene.character)
     matrices = skin_matrices(scene, rs.pose(scene.character, kind))
-    places = places_of(joint_boxes(mesh.positions, mesh.joints, mesh.weights), matrices)
+    places = hull_points(joint_boxes(mesh.positions, mesh.joints, mesh.weights), matrices)
     corners = np.concatenate([mesh.positions, np.ones((len(mesh.positions), 1))], axis=1)
     skinned = np.einsum("vk,vkrc,vc->vr", mesh.weights, matrices[mesh.joints], corners)
     ways = np.random.default_rng(5).normal(size=(50, 3))

@@ -16,9 +16,9 @@ from dancetutor_cli.film.scene.cpu.raster import (
     SNAP,
     SkinnedVertices,
     empty_canvas,
-    fill,
+    fill_triangles,
     note_least,
-    skin,
+    skin_vertices,
 )
 from dancetutor_cli.film.scene.cpu.stage_colours import arrow_distance
 from dancetutor_cli.film.scene.cpu.standing import quantise
@@ -38,7 +38,7 @@ def _random_triangles(seed, count, spread):
 
 def _drawn(points, triangles, keep):
     canvas = empty_canvas(HEIGHT, WIDTH)
-    fill(points, triangles, keep, 0, canvas)
+    fill_triangles(points, triangles, keep, 0, canvas)
     return (canvas.nearest >> 32) / DEPTH_UNIT, (canvas.nearest & 0xFFFFFFFF) - 1, canvas
 
 
@@ -109,11 +109,11 @@ def test_hidden_backs_are_left_out_and_nothing_else_changes():
     drawn = []
     for noted in (False, True):
         canvas = empty_canvas(HEIGHT, WIDTH)
-        fill(wall, np.array([[0, 1, 2], [2, 1, 3]], np.int32), FRONT, 0, canvas)
+        fill_triangles(wall, np.array([[0, 1, 2], [2, 1, 3]], np.int32), FRONT, 0, canvas)
         if noted:
             note_least(canvas)
             assert (canvas.least > 0).sum() >= 8
-        fill(points, triangles, BACK, 2, canvas)
+        fill_triangles(points, triangles, BACK, 2, canvas)
         drawn.append(canvas.nearest)
     np.testing.assert_array_equal(*drawn)
     assert ((drawn[0] & 0xFFFFFFFF) > 2).any()
@@ -133,7 +133,7 @@ def test_skin_is_linear_blending():
     index = rng.integers(0, joints, (count, 4)).astype(np.int32)
     matrices = rng.normal(size=(joints, 3, 4))
     world = np.empty((count, 9))
-    skin(SkinnedVertices(positions, normals, hull, index, weights), matrices, world)
+    skin_vertices(SkinnedVertices(positions, normals, hull, index, weights), matrices, world)
     blended = np.einsum("vk,vkrc->vrc", weights, matrices[index])
     np.testing.assert_allclose(
         world[:, :3], np.einsum("vrc,vc->vr", blended, np.column_stack([positions, np.ones(count)])), rtol=1e-9
@@ -226,5 +226,5 @@ def test_a_back_whose_normals_look_at_the_viewer_is_no_edge(facing: tuple[float,
     points[:, 3] = facing
     ways = np.array([[0, 1, 2], [0, 2, 1]], np.int32)
     canvas = empty_canvas(HEIGHT, WIDTH)
-    fill(points, ways, BACK, 0, canvas)
+    fill_triangles(points, ways, BACK, 0, canvas)
     assert bool(canvas.nearest.any()) is drawn

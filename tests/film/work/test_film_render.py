@@ -22,7 +22,7 @@ from PIL import Image
 from dancetutor_cli.film.choices import QUALITIES, Quality
 from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.media import encoder
-from dancetutor_cli.film.media.encoder import Encoding, join
+from dancetutor_cli.film.media.encoder import Encoding, join_segments
 from dancetutor_cli.film.media.sound import SoundPlan
 from dancetutor_cli.film.notes import NoteTrack
 from dancetutor_cli.film.work import jobs as film_jobs
@@ -223,7 +223,7 @@ def test_an_interrupted_film_leaves_the_old_one(tmp_path: Path, make_film: MakeF
 def test_only_drafts_trade_sound_for_time(tmp_path: Path, monkeypatch, quality: Quality) -> None:
     said: list[tuple[str, ...]] = []
     monkeypatch.setattr(encoder, "run", lambda arguments, what: said.append(tuple(arguments)))
-    join([], Encoding("mp4", (64, 64), 30, quality), tmp_path / "sound.wav", tmp_path, tmp_path / "film.mp4")
+    join_segments([], Encoding("mp4", (64, 64), 30, quality), tmp_path / "sound.wav", tmp_path, tmp_path / "film.mp4")
     assert ("fast" in said[0]) == (quality == "draft")
 
 

@@ -78,7 +78,7 @@ def blur(whole: Any, box: Any, radius: int, room: Any) -> None:  # pragma: no co
 
 
 @njit(cache=True)
-def occupied(depth: Any, mask: Any) -> Any:  # pragma: no cover
+def mark_occupied(depth: Any, mask: Any) -> Any:  # pragma: no cover
     """Fill the mask with 1 for occupied texels of a shadow map, else 0; return x0, y0, x1, y1 around them."""
     left, top, right, bottom = depth.shape[1], depth.shape[0], 0, 0
     for row in range(depth.shape[0]):

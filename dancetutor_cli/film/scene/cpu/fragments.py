@@ -274,7 +274,7 @@ def _lit(count: int, rows: Any, places: Any, toon: Any) -> None:  # pragma: no c
 
 
 @njit_raster_inner
-def colour(count: int, some: Any, triangles: Any, surface: Any, light: Any) -> None:  # pragma: no cover
+def colour_places(count: int, some: Any, triangles: Any, surface: Any, light: Any) -> None:  # pragma: no cover
     """Fill the colours of the first `count` places of `Fragments`, which have triangles, spots and shares."""
     _interpolate(count, some, triangles, surface, light)
     if light.toon[_CAST] > 0.0:

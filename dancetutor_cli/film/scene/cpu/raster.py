@@ -74,7 +74,7 @@ def empty_canvas(height: int, width: int) -> Canvas:
 
 
 @njit(cache=True)
-def skin(bound: Any, matrices: Any, world: Any) -> None:  # pragma: no cover
+def skin_vertices(bound: Any, matrices: Any, world: Any) -> None:  # pragma: no cover
     """Compute the vertices in the world. Both directions get length 1.
 
     matrices (j, 3, 4) : from binding pose to world; world (v, 9) : place, normal, hull direction
@@ -200,7 +200,7 @@ def _fine(value: float) -> int:  # pragma: no cover
 
 
 @njit_raster
-def fill(points: Any, triangles: Any, keep: int, offset: int, canvas: Any) -> None:  # pragma: no cover
+def fill_triangles(points: Any, triangles: Any, keep: int, offset: int, canvas: Any) -> None:  # pragma: no cover
     """Draw triangles on a `Canvas`, each with its number + `offset` + 1.
 
     Backs that the front or the triangles in `canvas.least` hide are left out.
@@ -289,7 +289,7 @@ def note_least(canvas: Any) -> None:  # pragma: no cover
 
 @njit_raster
 def fill_depth(points: Any, triangles: Any, depth: Any) -> None:  # pragma: no cover
-    """Draw the depth of triangles that face the light, for the shadow map, as `fill` does."""
+    """Draw the depth of triangles that face the light, for the shadow map, as `fill_triangles` does."""
     height, width = depth.shape
     lanes = min(width, _LANES.shape[0])
     for t in range(triangles.shape[0]):

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.film.choices import Quality
 from dancetutor_cli.film.scene.camera import NEAR, Camera
-from dancetutor_cli.film.scene.cpu.floor import Live, Shadow, blur, draw_ground, occupied
+from dancetutor_cli.film.scene.cpu.floor import Live, Shadow, blur, draw_ground, mark_occupied
 from dancetutor_cli.film.scene.cpu.fragments import PER_METRE, Light, Surface, toon_numbers
 from dancetutor_cli.film.scene.cpu.raster import (
     BACK,
@@ -19,13 +19,13 @@ from dancetutor_cli.film.scene.cpu.raster import (
     View,
     empty_canvas,
     extent,
-    fill,
     fill_depth,
+    fill_triangles,
     note_least,
     project,
     project_hull,
     project_light,
-    skin,
+    skin_vertices,
 )
 from dancetutor_cli.film.scene.cpu.shade import RasterResult, empty_room, light_vertices, resolve
 from dancetutor_cli.film.scene.cpu.standing import Background, draw_background
@@ -85,7 +85,7 @@ class CpuRenderer:
         mesh = self._mesh
         joints = joints_of(self._scene, state)
         matrices = skin_matrices(self._scene, joints)
-        skin(self._bound, matrices, self._world)
+        skin_vertices(self._bound, matrices, self._world)
         cast = place_cast(self._scene, camera, joints, self._map)
         count = {
             DancerVisibility.NOTHING: 0,
@@ -116,7 +116,7 @@ class CpuRenderer:
         self._shadow[:] = 0.0
         project_light(self._world, cast.axes, cast.origin, cast.scale, self._light_points)
         fill_depth(self._light_points, triangles, self._shadow)
-        left, top, right, bottom = occupied(self._shadow, self._mask)
+        left, top, right, bottom = mark_occupied(self._shadow, self._mask)
         radius = max(1, round(light.shadow_soft * cast.scale / 2))
         reach = 2 * radius + 1  # greatest reach of the blur; texels beyond it stay 0
         box = max(0, left - reach), max(0, top - reach), right + reach, bottom + reach
@@ -140,9 +140,9 @@ class CpuRenderer:
         outline = self._scene.look.toon.outline_width * per_metre
         project(self._world, view, self._points)
         project_hull(self._world, view, outline, self._hull)
-        fill(self._points, triangles, FRONT, 0, self._canvas)
+        fill_triangles(self._points, triangles, FRONT, 0, self._canvas)
         note_least(self._canvas)
-        fill(self._hull, triangles, BACK, len(triangles), self._canvas)
+        fill_triangles(self._hull, triangles, BACK, len(triangles), self._canvas)
         light_vertices(self._world, self._points, self._surface, eye, cast, self._vertex)
         self._toon[PER_METRE] = per_metre
         drawn, light = RasterResult(self._canvas, triangles), Light(self._vertex, self._shadow, self._toon)

@@ -27,7 +27,7 @@ from dancetutor_cli.film.scene.cpu.fragments import (
     W,
     X,
     Y,
-    colour,
+    colour_places,
     empty_fragments,
 )
 from dancetutor_cli.film.scene.cpu.raster import BAND, Canvas, njit_raster, njit_raster_inner
@@ -39,7 +39,7 @@ OFF_SURFACE = (0.012, 0.006)  # metres along normal and light, so that a surface
 
 
 class RasterResult(NamedTuple):
-    """The canvas of `raster.fill` and its triangles; numbers from their count on are outline."""
+    """The canvas of `raster.fill_triangles` and its triangles; numbers from their count on are outline."""
 
     canvas: Canvas
     triangles: NDArray[np.int32]
@@ -158,7 +158,7 @@ def resolve(out: Any, samples: int, drawn: Any, surface: Any, light: Any, room: 
         first, last = spans[band, 0] // samples, (spans[band, 1] + samples - 1) // samples
         for column in range(first, last):
             if n > BLOCK - total or pixels == BLOCK:  # the block may have no room for this pixel
-                colour(n, some, triangles, surface, light)
+                colour_places(n, some, triangles, surface, light)
                 _put(out, pixels, n, room)
                 pixels, n = 0, 0
             left = column * samples
@@ -210,7 +210,7 @@ def resolve(out: Any, samples: int, drawn: Any, surface: Any, light: Any, room: 
             pixels += 1
         for j in range(samples):
             nearest[top + j, first * samples : last * samples] = 0
-    colour(n, some, triangles, surface, light)
+    colour_places(n, some, triangles, surface, light)
     _put(out, pixels, n, room)
     for band in range(spans.shape[0]):
         spans[band, 0] = nearest.shape[1]

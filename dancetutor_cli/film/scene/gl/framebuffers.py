@@ -169,7 +169,7 @@ def has_ground(tiles: GroundTiles) -> NDArray[np.bool_]:
 def shaded_tiles(tiles: GroundTiles, light: Array, part: Array, spread: float) -> NDArray[np.bool_]:
     """Return whether the shadow may fall on each tile (t, u). light : `film.scene.shared.light_matrix`
 
-    part : `film.scene.shared.within`; spread : distance of the shadow's taps, as a share of the map
+    part : `film.scene.shared.shadow_part`; spread : distance of the shadow's taps, as a share of the map
     """
     out = np.ones(tiles.panel.shape, dtype=bool)
     for axis in (0, 1):

@@ -62,6 +62,7 @@ from dancetutor_cli.film.scene.shared import (
     camera_matrix,
     dancer_visibility,
     feet_on_floor,
+    hull_points,
     joint_boxes,
     joints_of,
     light_matrix,
@@ -69,10 +70,9 @@ from dancetutor_cli.film.scene.shared import (
     pixel_box,
     pixels_per_metre,
     place_cast,
-    places_of,
     shadow_middles,
+    shadow_part,
     skin_matrices,
-    within,
 )
 from dancetutor_cli.run.errors import UnavailableError, UsageError
 
@@ -84,7 +84,7 @@ _SHADOW_UNIT, _SKIN_UNIT, _FIRST_UNIT = 4, 5, 0
 class _DancerInFrame(NamedTuple):
     """The dancer in one frame. part : her visible part; joints : (j, 4, 4)
 
-    places : `film.scene.shared.places_of`; cast, light : the place of her shadow map, and its matrix (4, 4)
+    places : `film.scene.shared.hull_points`; cast, light : the place of her shadow map, and its matrix (4, 4)
     """
 
     part: DancerVisibility
@@ -151,7 +151,8 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         joints = joints_of(self._scene, state)
         cast = place_cast(self._scene, camera, joints, SHADOW_MAP[self._quality])
         skin = skin_matrices(self._scene, joints)
-        dancer = _DancerInFrame(dancer_visibility(state), joints, places_of(self._held, skin), cast, light_matrix(cast))
+        places = hull_points(self._held, skin)
+        dancer = _DancerInFrame(dancer_visibility(state), joints, places, cast, light_matrix(cast))
         matrices = np.zeros((MOST_JOINTS, 3, 4), np.float32)
         matrices[: len(joints)] = skin
         GL.glBindBuffer(GL.GL_UNIFORM_BUFFER, self._joints)
@@ -205,7 +206,7 @@ class GlRenderer(PyrenderRenderer):  # type: ignore[misc]
         lit, colour = panel_lights(self._scene, state)
         refill(self._lights, np.column_stack([colour / 255.0, lit]).astype(np.float32)[None])
         feet = feet_on_floor(self._scene, state)
-        cast, part = dancer.cast, within(dancer.light, dancer.places)
+        cast, part = dancer.cast, shadow_part(dancer.light, dancer.places)
         spread = float(max(1, round(look.light.shadow_soft * cast.scale / 2)) * 1.35 / self._map.size[0])
         under = foot_tiles(standing.tiles, feet, _foot_reach(look.light)) & standing.has_ground
         touched = is_lit(standing.tiles, lit)
