@@ -53,7 +53,7 @@ def test_a_hardware_encoder_is_tried_and_not_believed(monkeypatch: pytest.Monkey
     with pytest.raises(UnavailableError, match="vaapi does not work here: no such device"):
         probe.choose_encoder("vaapi")
     monkeypatch.setattr(probe, "encoder_problem", lambda encoder: None)
-    assert probe.choose_encoder("auto") == "nvenc" and probe.choose("vaapi") == "vaapi"
+    assert probe.choose_encoder("auto") == "nvenc" and probe.choose_encoder("vaapi") == "vaapi"
 
 
 def test_without_ffmpeg_there_are_no_films(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

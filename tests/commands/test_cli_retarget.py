@@ -15,7 +15,7 @@ from physics_phrase import phrase
 from dancetutor_cli.commands.retarget import _CORRECTIONS, command
 from dancetutor_cli.dance.physics.pipeline import CORRECTIONS
 from dancetutor_cli.dance.rig import quaternion as quat
-from dancetutor_cli.film.media.encoder import Encoding, join
+from dancetutor_cli.film.media.encoder import Encoding, join_segments
 from dancetutor_cli.film.picture import Frame
 from dancetutor_cli.film.work import motion_film
 from dancetutor_cli.formats.bvh import read_bvh, write_bvh
@@ -135,7 +135,7 @@ def test_the_film_has_all_its_frames(bvh: Path, tmp_path: Path, monkeypatch: pyt
 
     def joining(parts: list[Path], encoding: Encoding, sound: None, work: Path, output: Path) -> None:
         joined.append((parts, output))
-        join(parts, encoding, sound, work, output)
+        join_segments(parts, encoding, sound, work, output)
 
     monkeypatch.setattr(motion_film, "SIZE", (64, 64))
     monkeypatch.setattr(motion_film, "join_segments", joining)

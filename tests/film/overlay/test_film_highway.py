@@ -148,7 +148,7 @@ def test_no_tag_covers_another(down: bool, monkeypatch: pytest.MonkeyPatch) -> N
         if sprite is flag:
             drawn.append((y, y + flag.shape[0]))
 
-    monkeypatch.setattr("dancetutor_cli.film.overlay.highway.blit", noted)
+    monkeypatch.setattr("dancetutor_cli.film.overlay.highway.draw_sprite", noted)
     highway.draw(np.zeros((360, 640, 3), np.uint8), 0.8, 1.6)
     assert len(drawn) == 3
     row = highway.geometry.receptor + highway.spacing * (0.2 if highway.by_time else 0.4)

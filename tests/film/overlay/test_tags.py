@@ -145,7 +145,7 @@ def test_a_tag_is_seen_whole_or_not_at_all(down: bool, monkeypatch: pytest.Monke
         if x == highway.geometry.tags_left:
             drawn.append((y, sprite.shape[0]))
 
-    monkeypatch.setattr("dancetutor_cli.film.overlay.highway.blit", noted)
+    monkeypatch.setattr("dancetutor_cli.film.overlay.highway.draw_sprite", noted)
     frame = np.zeros((720, 1280, 3), np.uint8)
     for second in np.arange(0.0, 2.0, 1 / 60):
         highway.draw(frame, float(second), float(2 * second))

@@ -13,7 +13,7 @@ from dancetutor_cli.film.work import segments as film_segments
 from dancetutor_cli.film.work.batch import film_list
 from dancetutor_cli.film.work.jobs import FilmJob
 from dancetutor_cli.film.work.request import film_key, look_up
-from dancetutor_cli.film.work.segments import WORK, FilmRecord, PlanFile, find_records, segments
+from dancetutor_cli.film.work.segments import WORK, FilmRecord, PlanFile, cut_segments, find_records
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.pool import SerialWorkers
 
@@ -74,7 +74,7 @@ def test_a_segment_beside_the_films_is_not_taken_for_finished(valid: bool, job: 
     film = expected(job, tmp_path)
     state = old_state(job)
     state.mkdir(parents=True)
-    for part in segments(10_000, job.encoding, state)[:6]:
+    for part in cut_segments(10_000, job.encoding, state)[:6]:
         part.path.write_bytes(film if valid else b"junk")
     assert [o.status for o in run([job]).values()] == ["done"]
     assert job.output.read_bytes() == film
