@@ -20,7 +20,7 @@ from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.reader import load
 from dancetutor_cli.feet.pads import Pad, load_pad
-from dancetutor_cli.feet.play import Play, Rows, prepare
+from dancetutor_cli.feet.play import Play, Rows, prepare_rows
 from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.feet.solver.solve import solve_rows
 from dancetutor_cli.feet.song_feet import SongFeet
@@ -96,7 +96,7 @@ def load_pins(paths: list[Path]) -> list[Labelled]:
             feet = (overrides.limbs == 0) | (overrides.limbs == 1)
             if pad is None or not feet.any():
                 continue
-            rows = prepare(chart, pad)
+            rows = prepare_rows(chart, pad)
             row = np.searchsorted(rows.tick, overrides.ticks).clip(max=len(rows) - 1)
             there = feet & (rows.tick[row] == overrides.ticks) & (overrides.columns < len(pad))
             there[there] &= rows.steps[row[there], overrides.columns[there]] > 0
@@ -122,7 +122,7 @@ def one_label(root: Path, entry: dict) -> Labelled | None:  # type: ignore[type-
     pad = load_pad(chart.steps_type)
     if pad is None:
         sys.exit(f"{entry['chart']}: no pad for {chart.steps_type}")
-    rows = prepare(chart, pad)
+    rows = prepare_rows(chart, pad)
     row_of = {tick: row for row, tick in enumerate(rows.tick.tolist())}
     cells = [
         (row_of[tick], int(column), "LR".index(foot))

@@ -19,7 +19,7 @@ from unpacking import unpack
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.reader import load
 from dancetutor_cli.feet.pads import Pad, load_pad
-from dancetutor_cli.feet.play import Rows, prepare
+from dancetutor_cli.feet.play import Rows, prepare_rows
 from dancetutor_cli.feet.preset import Preset, load_preset
 from dancetutor_cli.feet.solver.engine import Engine
 from dancetutor_cli.feet.solver.solve import solve_rows
@@ -60,7 +60,7 @@ def prepared() -> dict[str, list[tuple[Rows, Pad]]]:
             if chart.steps_type in TYPES:
                 pad = load_pad(chart.steps_type)
                 assert pad is not None
-                out[chart.steps_type].append((prepare(chart, pad), pad))
+                out[chart.steps_type].append((prepare_rows(chart, pad), pad))
     return out
 
 

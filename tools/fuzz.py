@@ -106,13 +106,13 @@ def _baseline(path: Path) -> object:
 def _play(path: Path) -> object:
     from dancetutor_cli.chart.reader import load
     from dancetutor_cli.feet.pads import load_pad
-    from dancetutor_cli.feet.play import prepare
+    from dancetutor_cli.feet.play import prepare_rows
     from dancetutor_cli.feet.play_json import read_play
 
     chart = load(charts_path() / "two_left_feet" / "two_left_feet.ssc").charts[0]
     pad = load_pad(chart.steps_type)
     assert pad is not None
-    return read_play(path, chart, prepare(chart, pad, 0.35))
+    return read_play(path, chart, prepare_rows(chart, pad, 0.35))
 
 
 def _editor(path: Path) -> object:

@@ -40,7 +40,7 @@ from dancetutor_cli.dance.request import ChartChoice, DanceRequest, check_reques
 from dancetutor_cli.dance.settings import load_settings
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.pads import load_pad
-from dancetutor_cli.feet.play import Play, prepare
+from dancetutor_cli.feet.play import Play, prepare_rows
 from dancetutor_cli.feet.solved import Solved, solve_song
 from dancetutor_cli.feet.unplayable import without_unplayable
 from dancetutor_cli.run.errors import DancetutorError, UsageError
@@ -313,7 +313,7 @@ def merge_plays(chart: Chart, plays: Sequence[Play], whole: Pad, roll_window: fl
 
     roll_window : of the preset with which the plays were found
     """
-    rows = prepare(chart, whole, roll_window)
+    rows = prepare_rows(chart, whole, roll_window)
     limb = np.full(rows.steps.shape, int(Limb.NONE), dtype=np.int8)
     part = np.zeros(rows.steps.shape, dtype=np.uint8)
     moves: list[set[str]] = [set() for _ in range(len(rows))]

@@ -4,7 +4,7 @@ solved.solve_song             solves a song's charts
   |   pads, preset              where panels are; what each undesired thing costs; which preset a chart gets
   |   song_feet                 feet that people have set: annotations in the file, sme (SMEditor), dancetutor.yaml
   |   overrides                 the same for one chart, and the contradictions
-  |   play.prepare_all          rows of notes
+  |   play.prepare_all_rows     rows of notes
   |   solver.solve              the play that costs least
 solved.Solved                 a chart, its `play.Play`, its pad and preset
 

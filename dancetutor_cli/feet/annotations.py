@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart.cells import PLAYERS
 from dancetutor_cli.chart.model import STEP_KINDS, Chart, Song
-from dancetutor_cli.feet.limbs import MARKER, MEANING, NotationError, Token, limb_and_part, parse
+from dancetutor_cli.feet.limbs import MARKER, MEANING, NotationError, Token, limb_and_part, parse_marker
 from dancetutor_cli.feet.overrides import CellOverride, FeetProblem
 from dancetutor_cli.run.errors import plural
 
@@ -138,7 +138,7 @@ def pinned_cells(song: Song, chart: Chart) -> tuple[list[CellOverride], list[Fee
         mine = by_measure.get(pin.measure, [])
         columns = [rows.steps[i].nonzero()[0].tolist() for i in mine]
         try:
-            tokens = parse(pin.text)
+            tokens = parse_marker(pin.text)
             _check_shape(tokens, columns)
         except NotationError as error:
             text = f"pinned measure {pin.measure}: {error}; the pin is not used"

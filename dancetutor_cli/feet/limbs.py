@@ -102,13 +102,13 @@ def limb_and_part(letter: str, letters: str) -> tuple[Limb, Part]:
     return limb, Part.HEEL if letter.isupper() and letter.lower() in letters else part
 
 
-def marker(tokens: Iterable[str]) -> bytes:
+def marker_text(tokens: Iterable[str]) -> bytes:
     """Return the marker of a measure; `tokens` holds the letters of each row with a step."""
     text = "".join(letters if len(letters) == 1 else f"({letters})" for letters in tokens)
     return b"{dt1 " + text.encode("ascii") + b"}"
 
 
-def parse(text: bytes) -> list[Token]:
+def parse_marker(text: bytes) -> list[Token]:
     """Return the tokens of a marker's text; blanks between tokens are ignored. Raises NotationError."""
     return list(_tokens(text.decode("latin-1").rstrip(" \t")))
 

@@ -119,7 +119,7 @@ class CellOverride:
     place: int | None = None
 
 
-def contradictions(chart: Chart, cells: Iterable[CellOverride]) -> tuple[list[CellOverride], list[FeetProblem]]:
+def split_contradictions(chart: Chart, cells: Iterable[CellOverride]) -> tuple[list[CellOverride], list[FeetProblem]]:
     """Divide the overrides into those that can be danced and the problems of those that cannot.
 
     A row that contradicts itself is dropped as a whole. Of a step that contradicts a hold of the same foot, only the

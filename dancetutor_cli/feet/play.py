@@ -128,7 +128,7 @@ _TICK = (1 << _CHART) - 1
 _EPSILON = 1e-6  # seconds (docs/cost-model.md)
 
 
-def prepare(chart: Chart, pad: Pad, roll_window: float = 0.35) -> Rows:
+def prepare_rows(chart: Chart, pad: Pad, roll_window: float = 0.35) -> Rows:
     """Return the rows of a chart: beats with at least one step or mine (docs/cost-model.md, "Rows").
 
     Parameters
@@ -137,10 +137,10 @@ def prepare(chart: Chart, pad: Pad, roll_window: float = 0.35) -> Rows:
     pad : gives the number of columns, c
     roll_window : seconds that a roll may go unpressed: the greatest gap between its virtual taps
     """
-    return prepare_all([chart], pad, roll_window)[0]
+    return prepare_all_rows([chart], pad, roll_window)[0]
 
 
-def prepare_all(charts: Sequence[Chart], pad: Pad, roll_window: float) -> list[Rows]:
+def prepare_all_rows(charts: Sequence[Chart], pad: Pad, roll_window: float) -> list[Rows]:
     """Return the rows of several charts that share their timing; one call is faster than a call for each chart.
 
     Raises ValueError if the charts do not share their timing.

@@ -162,7 +162,7 @@ def read_play(path: Path, chart: Chart, rows: Rows) -> Play:
     Parameters
     ----------
     path : the file; chart : the chart of the play, identified by index, steps type and player
-    rows : the rows of the chart, from `play.prepare`, with c panels
+    rows : the rows of the chart, from `play.prepare_rows`, with c panels
 
     Raises FileError if the file does not have this format, or does not fit the chart.
     """

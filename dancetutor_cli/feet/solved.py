@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.feet.overrides import FeetProblem, Ignores, Overrides
 from dancetutor_cli.feet.pads import Pad, load_pad
-from dancetutor_cli.feet.play import Play, Rows, prepare_all
+from dancetutor_cli.feet.play import Play, Rows, prepare_all_rows
 from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.feet.solver import solve
 from dancetutor_cli.feet.song_feet import SongFeet
@@ -64,7 +64,7 @@ def _rows(charts: Sequence[tuple[Chart, Preset]]) -> list[Rows | None]:
     for (steps_type, _, window), places in alike.items():
         pad = load_pad(steps_type)
         if pad is not None:
-            rows = prepare_all([charts[place][0] for place in places], pad, window)
+            rows = prepare_all_rows([charts[place][0] for place in places], pad, window)
             for place, one in zip(places, rows, strict=True):
                 found[place] = one
     return found

@@ -22,7 +22,7 @@ from dancetutor_cli.chart.players import shares_rows
 from dancetutor_cli.feet.annotations import has_pins, pinned_cells
 from dancetutor_cli.feet.conditions import Condition, When, condition_of
 from dancetutor_cli.feet.limbs import LETTERS, MEANING, UNKNOWN, Limb, Part, limb_and_part
-from dancetutor_cli.feet.overrides import CellOverride, FeetProblem, Ignores, Overrides, contradictions
+from dancetutor_cli.feet.overrides import CellOverride, FeetProblem, Ignores, Overrides, split_contradictions
 from dancetutor_cli.run.errors import FileError, MissingFileError
 from dancetutor_cli.run.files import UCS_SUFFIX
 from dancetutor_cli.run.reading import CHART_LIMIT, parse_json, read_bytes, shown_key
@@ -155,7 +155,7 @@ class SongFeet:
         overrides = {
             (s.tick, s.column): s for s in (given if chart.written is None else _of_player(chart, given))
         }  # later win
-        good, contradictory = contradictions(chart, overrides.values())
+        good, contradictory = split_contradictions(chart, overrides.values())
         if chart.player > 1:  # problems outside the notes are reported only for the first player
             editor, settings = replace(editor, problems=()), replace(settings, problems=())
             problems = [] if shares_rows(chart) else problems

@@ -39,13 +39,13 @@ def without_unplayable(
 ) -> tuple[Play, tuple[DroppedNote, ...]]:
     """Return the play without the notes that nobody can play, and these notes in order of time.
 
-    Notes for which the solver found no limb stay `Limb.UNPLAYED`, and the notes that `too_quick` finds become
+    Notes for which the solver found no limb stay `Limb.UNPLAYED`, and the notes that `too_quick_notes` finds become
     `Limb.UNPLAYED`. A foot without its note stays where it is.
 
     play : a play whose seconds are those of the audible music; before : known reasons for notes that are already
     unplayed
     """
-    found = list(too_quick(play, pad))
+    found = list(too_quick_notes(play, pad))
     if not found and not (play.limb == Limb.UNPLAYED).any():
         return play, ()
     if found:
@@ -59,7 +59,7 @@ def without_unplayable(
     )
 
 
-def too_quick(play: Play, pad: Pad) -> Iterator[tuple[int, int, DropReason]]:
+def too_quick_notes(play: Play, pad: Pad) -> Iterator[tuple[int, int, DropReason]]:
     """Yield the row, the column and the reason of each note that its limb cannot reach in time.
 
     A foot leaps if it steps within `LEAP` seconds of its last step, and no panel of the one step touches a panel of the

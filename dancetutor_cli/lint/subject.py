@@ -20,7 +20,7 @@ from dancetutor_cli.feet.pads import Pad
 from dancetutor_cli.feet.play import Ambiguity, StepKind
 from dancetutor_cli.feet.preset import LEAP, DropReason, Preset
 from dancetutor_cli.feet.solved import Solved, solve_song
-from dancetutor_cli.feet.unplayable import SAME_TIME, too_quick
+from dancetutor_cli.feet.unplayable import SAME_TIME, too_quick_notes
 from dancetutor_cli.lint.candidates import Candidates
 from dancetutor_cli.lint.meter.estimate import size
 from dancetutor_cli.lint.meter.score import Oddities, timing_oddities
@@ -162,7 +162,7 @@ class ChartSubject(PlacedChart):
             return ()
         if self.facts.own(self.facts.candidates.least_foot_seconds) > LEAP + SAME_TIME and not self.has("hand"):
             return ()
-        return tuple(too_quick(self.play, self.pad))
+        return tuple(too_quick_notes(self.play, self.pad))
 
     @cached_property
     def step_rows(self) -> NDArray[np.int64]:

@@ -10,7 +10,7 @@ from enum import Enum
 from dancetutor_cli.chart.edits import Splice
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.feet.annotations import StepRows, markers_in, measure_lines
-from dancetutor_cli.feet.limbs import NotationError, marker, parse
+from dancetutor_cli.feet.limbs import NotationError, marker_text, parse_marker
 from dancetutor_cli.markers.model import ChartFeet, CheckLine, NoteChange
 
 
@@ -89,7 +89,7 @@ def _updates(data: bytes, feet: ChartFeet, force: bool) -> tuple[list[Splice], l
             states.append(MeasureState(line.measure, int(chart.measures.line[line.measure]), state))
         if state in (State.PINNED, None):
             continue
-        new = _with(comment, marker(tokens), force) if tokens else _without(comment, force)
+        new = _with(comment, marker_text(tokens), force) if tokens else _without(comment, force)
         if new != comment:
             splices.append(Splice(line.start, line.end, new))
     states += (MeasureState(m, int(chart.measures.line[m]), State.IMPOSSIBLE) for m in wanted)
@@ -116,10 +116,10 @@ def _state(comment: bytes, tokens: list[str] | None, force: bool) -> State | Non
         return State.MISSING if tokens else None
     if not force and any(m["pin"] for m in found):
         return State.PINNED
-    if tokens and len(found) == 1 and found[0][0] == marker(tokens):
+    if tokens and len(found) == 1 and found[0][0] == marker_text(tokens):
         return State.CURRENT
     try:
-        shape = [len(token.letters) for token in parse(found[0]["text"])]
+        shape = [len(token.letters) for token in parse_marker(found[0]["text"])]
     except NotationError:
         return State.STALE
     return State.DIFFERENT if tokens and shape == [len(text) for text in tokens] else State.STALE

@@ -11,9 +11,8 @@ from hypothesis import strategies as st
 from dancetutor_cli.chart.model import Song
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.feet.annotations import pinned_cells
-from dancetutor_cli.feet.limbs import LETTERS, Limb, NotationError, Part, letter, marker
-from dancetutor_cli.feet.limbs import parse as parse_tokens
-from dancetutor_cli.feet.overrides import FeetProblem, Overrides, contradictions
+from dancetutor_cli.feet.limbs import LETTERS, Limb, NotationError, Part, letter, marker_text, parse_marker
+from dancetutor_cli.feet.overrides import FeetProblem, Overrides, split_contradictions
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.feet.song_feet import SongFeet
@@ -31,7 +30,7 @@ def song_of(measures: bytes) -> Song:
 def read_pins(song: Song) -> tuple[Overrides, tuple[FeetProblem, ...]]:
     """The pinned feet of the first chart, but those that contradict themselves or what came before; all problems."""
     said, problems = pinned_cells(song, song.charts[0])
-    good, contradictory = contradictions(song.charts[0], said)
+    good, contradictory = split_contradictions(song.charts[0], said)
     return Overrides.of({(s.tick, s.column): (s.limb, s.part) for s in good}), (*problems, *contradictory)
 
 
@@ -127,16 +126,16 @@ def test_the_solver_keeps_pinned_feet() -> None:
 
 @given(st.lists(st.text(alphabet=sorted(LETTERS), min_size=1, max_size=4), max_size=20))
 def test_markers_are_read_as_they_were_written(tokens: list[str]) -> None:
-    text = marker(tokens)
+    text = marker_text(tokens)
     assert not set(text) & set(b":;#,&\\/")
     inner = text.removeprefix(b"{dt1 ").removesuffix(b"}")
-    assert [token.letters for token in parse_tokens(inner)] == tokens
+    assert [token.letters for token in parse_marker(inner)] == tokens
 
 
 @given(st.binary(max_size=30))
 def test_any_text_is_read_or_refused(text: bytes) -> None:
     try:
-        tokens = parse_tokens(text)
+        tokens = parse_marker(text)
     except NotationError as error:
         assert 0 <= error.at <= len(text)
         return

@@ -8,7 +8,7 @@ import pytest
 from play_rows import letters, pad_of, rows_of
 
 from dancetutor_cli.chart.reader import load
-from dancetutor_cli.feet.play import prepare
+from dancetutor_cli.feet.play import prepare_rows
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solver.solve import solve_rows
 from dancetutor_cli.run.errors import DancetutorError
@@ -59,7 +59,7 @@ def test_low_charts_for_dance_pads_have_no_turns(corpus: Path) -> None:
         for chart in song.charts:
             if chart.steps_type != "dance-single" or not 1 <= chart.meter <= 7:
                 continue
-            prepared = prepare(chart, pad, BEGINNER.roll_window)
+            prepared = prepare_rows(chart, pad, BEGINNER.roll_window)
             usual, found = (solve_rows(prepared, pad, preset, margins=False) for preset in (ITG, BEGINNER))
             moves = [name for names in found.moves for name in names]
             assert "crossover-full" not in moves and "spin" not in moves and "bracket" not in moves, (path, chart.label)

@@ -15,7 +15,7 @@ from play_rows import check_mirror, pad_of, timed
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.reader import load, parse
 from dancetutor_cli.feet.limbs import Limb, Part
-from dancetutor_cli.feet.play import Rows, StepKind, prepare
+from dancetutor_cli.feet.play import Rows, StepKind, prepare_rows
 from dancetutor_cli.feet.preset import load_preset, preset_names
 from dancetutor_cli.feet.solver.solve import solve_chart, solve_rows
 from dancetutor_cli.run.errors import DancetutorError
@@ -43,7 +43,7 @@ def test_mirroring_real_charts_left_right_mirrors_the_feet(corpus: Path, name: s
     sure = total = 0
     for _, chart in sample(corpus, 20):
         pad = pad_of(chart.steps_type)
-        rows = prepare(chart, pad)
+        rows = prepare_rows(chart, pad)
         sure += check_mirror(rows, pad, PRESETS[name], left_right=True)
         total += len(rows)
     assert total > 20_000 and sure > total // 2
@@ -53,7 +53,7 @@ def test_mirroring_up_down_mirrors_the_feet_of_thesis_without_hands(corpus: Path
     checked = 0
     for _, chart in sample(corpus, 20):
         pad = pad_of(chart.steps_type)
-        rows = prepare(chart, pad)
+        rows = prepare_rows(chart, pad)
         if ((rows.steps > 0).sum(axis=1) <= 2).all() and (solve_rows(rows, pad, PRESETS["thesis"]).limb <= 1).all():
             checked += check_mirror(rows, pad, PRESETS["thesis"], left_right=False)
     assert checked > 5_000

@@ -19,7 +19,7 @@ from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.reader import load, parse
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.pads import load_pad
-from dancetutor_cli.feet.play import Play, prepare
+from dancetutor_cli.feet.play import Play, prepare_rows
 from dancetutor_cli.feet.preset import Preset, load_preset
 from dancetutor_cli.feet.solver.solve import solve_chart, solve_rows
 from dancetutor_cli.run.errors import DancetutorError
@@ -141,7 +141,7 @@ def test_doublesteps_forbidden(text: str) -> None:
     preset = no_doublesteps()
     pad = load_pad(chart.steps_type)
     assert pad is not None
-    play = solve_rows(prepare(chart, pad, 0.35), pad, preset)
+    play = solve_rows(prepare_rows(chart, pad, 0.35), pad, preset)
     assert play.total == Reference("dance-single", allow_doublestep=False).solve(reference_rows(chart))
 
 

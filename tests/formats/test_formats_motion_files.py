@@ -15,7 +15,7 @@ from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.performance import as_heard
 from dancetutor_cli.dance.plan import Press
 from dancetutor_cli.feet.pads import load_pad
-from dancetutor_cli.feet.play import prepare
+from dancetutor_cli.feet.play import prepare_rows
 from dancetutor_cli.feet.play_json import read_play
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solver.solve import solve_chart
@@ -114,7 +114,7 @@ def test_a_play_from_json_dances_the_same(demo, tmp_path: Path) -> None:  # type
     chart, play, pad = demo
     path = tmp_path / "play.json"
     path.write_text(json.dumps(as_json(chart, play)), encoding="utf-8")
-    back = read_play(path, chart, prepare(chart, pad, 0.35))
+    back = read_play(path, chart, prepare_rows(chart, pad, 0.35))
     np.testing.assert_array_equal(back.limb, play.limb)
     np.testing.assert_array_equal(back.feet, play.feet)
     section = (24.0, 30.0)  # mines and rolls
@@ -142,7 +142,7 @@ def test_a_play_that_does_not_fit_is_refused(demo, spoil, said: str, tmp_path: P
     path = tmp_path / "play.json"
     path.write_text(json.dumps(data), encoding="utf-8")
     with pytest.raises(FileError, match=said):
-        read_play(path, chart, prepare(chart, pad, 0.35))
+        read_play(path, chart, prepare_rows(chart, pad, 0.35))
 
 
 def test_half_speed_keeps_gravity(demo) -> None:  # type: ignore[no-untyped-def]

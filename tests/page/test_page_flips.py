@@ -8,7 +8,7 @@ import pytest
 from dancetutor_cli.chart.reader import load
 from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.feet.pads import load_pad
-from dancetutor_cli.feet.play import StepKind, prepare
+from dancetutor_cli.feet.play import StepKind, prepare_rows
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solver.solve import solve_rows
 from dancetutor_cli.page.facts import flips_of
@@ -22,7 +22,7 @@ def test_a_flip_costs_what_the_solver_s_margin_says() -> None:
     chart, preset = load(DEMO).charts[3], load_preset("itg")
     pad = load_pad(chart.steps_type)
     assert pad is not None
-    play = solve_rows(prepare(chart, pad, preset.roll_window), pad, preset)
+    play = solve_rows(prepare_rows(chart, pad, preset.roll_window), pad, preset)
     assert play.margin is not None
     flips = flips_of(play, pad, preset, Overrides.none())
     seen = np.isin(play.limb, (0, 1)) & (play.rows.steps != StepKind.ROLL_TAP)
@@ -42,7 +42,7 @@ def test_what_changes_with_it_is_the_cheapest_play_with_those_feet() -> None:
     chart, preset = load(DEMO).charts[3], load_preset("itg")
     pad = load_pad(chart.steps_type)
     assert pad is not None
-    play = solve_rows(prepare(chart, pad, preset.roll_window), pad, preset)
+    play = solve_rows(prepare_rows(chart, pad, preset.roll_window), pad, preset)
     flip = next(f for f in flips_of(play, pad, preset, Overrides.none()) if len(f["changes"]) > 1)
     cells = {(int(play.rows.tick[r]), c): (limb, 0) for r, c, limb in flip["changes"]}
     again = solve_rows(play.rows, pad, preset, Overrides.of(cells))

@@ -25,7 +25,7 @@ from dancetutor_cli.feet.solver.packing import (
 )
 from dancetutor_cli.feet.solver.solvers import EXPLAIN, solve_itg, solve_thesis
 from dancetutor_cli.feet.solver.tables import RowArrays, RowStates, SolverPath, clear_tables, empty_tables, grown
-from dancetutor_cli.feet.solver.techniques import limits, long_ways
+from dancetutor_cli.feet.solver.techniques import long_ways, move_limits
 from dancetutor_cli.feet.solver.vocabulary import MODELS, MOST_MS
 
 # Costs over time: the curves of a preset at every millisecond, in integers, so that every machine finds the same play.
@@ -75,7 +75,7 @@ class Engine:
             np.array([value for _, value in preset.switches], dtype=np.bool_),
             curve_table(preset),
             np.array(pad.home, dtype=np.int64),
-            limits(),
+            move_limits(),
             long_ways(pad),
         )
         self._making = Making(rules, empty_moves(len(preset.weights)))

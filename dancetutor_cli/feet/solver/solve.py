@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from dancetutor_cli.chart.model import Chart
 from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.feet.pads import Pad, load_pad
-from dancetutor_cli.feet.play import Play, Rows, StepKind, prepare
+from dancetutor_cli.feet.play import Play, Rows, StepKind, prepare_rows
 from dancetutor_cli.feet.preset import Curve, Preset
 from dancetutor_cli.feet.solver.engine import Engine, engine_for, whole_curve
 from dancetutor_cli.feet.solver.tables import SolverPath
@@ -25,7 +25,7 @@ def solve_rows(
 
     Parameters
     ----------
-    rows : n rows of the pad's c columns, as `prepare` makes them
+    rows : n rows of the pad's c columns, as `prepare_rows` makes them
     overrides : limbs that the play must keep, even against the rules; overrides of cells without a step, and overrides
     that nobody can follow (one foot on two panels that are no bracket), are ignored
     margins : whether to compute `Play.margin` and `Play.ambiguity`, which about doubles the time
@@ -45,7 +45,7 @@ def solve_chart(
     pad = load_pad(chart.steps_type)
     if pad is None:
         return None
-    return solve_rows(prepare(chart, pad, preset.roll_window), pad, preset, overrides, margins=margins)
+    return solve_rows(prepare_rows(chart, pad, preset.roll_window), pad, preset, overrides, margins=margins)
 
 
 def forced_limbs(rows: Rows, overrides: Overrides | None) -> NDArray[np.int64] | None:

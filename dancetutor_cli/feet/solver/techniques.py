@@ -89,7 +89,7 @@ class _Moves:
     drill: _Run
 
 
-def limits() -> NDArray[np.float64]:
+def move_limits() -> NDArray[np.float64]:
     """Return the limits of moves, in the order of `packing.GALLOP_TICKS` and the constants after it."""
     moves = _moves()
     gallop = (moves.gallop.beats * TICKS_PER_BEAT, moves.gallop.seconds, moves.gallop.neighbours)
