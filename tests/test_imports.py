@@ -52,7 +52,7 @@ REASONS = {
     "feet/solved.py": "the way in, above the solver and the feet that people have set",
     "feet/solver/compiled.py": "chooses without numba whether kernels are compiled",
     "film/media/yuv.py": "kernels; encoder works without them",
-    "page/capture.py": "has the points of a capture, which a page of a chart does without",
+    "page/capture.py": "needs the film of a motion, which a page of a chart does without",
     "run/markup.py": "pages and reports use it, which know nothing of each other",
     "dance/ik/trunk.py": "hands and targets change now; then it joins them or the knees",
 }  # fmt: skip
