@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields, replace
 from itertools import islice
@@ -166,38 +166,35 @@ def analyze_files(tasks: Iterable[AnalyzeTask]) -> Iterator[FileResult]:
         try:
             window.add(_File(task))
         except Exception:
+            window.check()
             yield from window.results()
             raise
-        if window.is_full:
-            yield from window.results()
-            freeze_objects()  # by now all modules are imported
+        yield from window.results()
+    window.check()
     yield from window.results()
 
 
 class _Window:
-    """Files whose charts wait to be checked together.
+    """Charts that wait to be checked together, and the files without a result.
 
     Most charts have few rows, and each array operation has a fixed cost.
     """
 
     def __init__(self) -> None:
-        self._files: list[_File] = []
+        self._files: deque[_File] = deque()
         self._waiting: list[tuple[_File, ChartSubject]] = []
         self._rows = 0
 
-    @property
-    def is_full(self) -> bool:
-        return self._rows >= _ROWS
-
     def add(self, file: _File) -> None:
-        """Solve the charts of a file. A file that fails leaves the window as it was."""
+        """Solve the charts of a file, and check whenever enough wait. A file that fails leaves the window as it was."""
         before = len(self._waiting), self._rows
         try:
             for subject in file.solve():
                 self._waiting.append((file, subject))
                 self._rows += subject.row_count + _CHART
-                if self.is_full:  # a file may hold thousands of charts
-                    self._look()
+                if self._rows >= _ROWS:  # here and not after the file, which may hold thousands of charts
+                    self.check()
+                    freeze_objects()  # by now all modules are imported
                     before = 0, 0
         except Exception:
             del self._waiting[before[0] :]
@@ -206,13 +203,13 @@ class _Window:
         self._files.append(file)
 
     def results(self) -> Iterator[FileResult]:
-        """Yield the results of all files that were added since the last call."""
-        self._look()
-        files, self._files = self._files, []
-        for file in files:
-            yield file.result()
+        """Yield the results of the files that come before the first waiting chart, in order, and forget them."""
+        first = self._waiting[0][0] if self._waiting else None
+        while self._files and self._files[0] is not first:
+            yield self._files.popleft().result()
 
-    def _look(self) -> None:
+    def check(self) -> None:
+        """Check all waiting charts."""
         from dancetutor_cli.lint.subject import share_plays
 
         waiting, self._waiting, self._rows = self._waiting, [], 0
@@ -221,8 +218,8 @@ class _Window:
             try:
                 file.add(subject)
             except Exception:  # only the files before this one are reported: the others lack some charts
-                if file in self._files:
-                    del self._files[self._files.index(file) :]
+                while file in self._files:
+                    self._files.pop()
                 raise
 
 
