@@ -227,7 +227,7 @@ class Sound:
         return self.start + first / self.rate
 
 
-def decode(path: Path, head: AudioHead, seconds: float = LONGEST) -> Sound:
+def decode_music(path: Path, head: AudioHead, seconds: float = LONGEST) -> Sound:
     """Decode the first `seconds` of a music file, at most `LONGEST`. Raises EncoderError if ffmpeg fails.
 
     ffmpeg would remove the samples by which MP3 encoders delay their music; `skip_manual` keeps them, as the games do.

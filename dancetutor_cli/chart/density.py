@@ -89,10 +89,10 @@ def density(chart: Chart, stream_rows: int) -> Density:
     first, last = seconds[-2:].tolist()
     mean = (len(ticks) - 1) / (last - first) if last > first else 0.0
     stream = counts >= stream_rows
-    return Density(float(mean), float(rates.max()), breakdown(stream.tolist()), int(stream.sum()))
+    return Density(float(mean), float(rates.max()), describe_stream(stream.tolist()), int(stream.sum()))
 
 
-def breakdown(stream: Sequence[bool]) -> str:
+def describe_stream(stream: Sequence[bool]) -> str:
     """Return runs of stream measures as numbers, with the breaks between them in parentheses."""
     if not any(stream):
         return ""

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.chart.hash import COMMENT, hash_input
 from dancetutor_cli.chart.model import Chart, Kind, NoteTable, RowTable, Song
-from dancetutor_cli.chart.msd import decode, encoding_of
+from dancetutor_cli.chart.msd import decode_text, encoding_of
 from dancetutor_cli.chart.names import TICKS_PER_MEASURE
 from dancetutor_cli.chart.reader import parse
 from dancetutor_cli.run.errors import FileError
@@ -22,7 +22,11 @@ from dancetutor_cli.run.errors import FileError
 
 @dataclass(frozen=True, slots=True, order=True)
 class Splice:
-    """A replacement of `data[start:end]` by `text`."""
+    """A replacement of `data[start:end]` by `text`.
+
+    Replacements are sorted by place, and several insertions at one place by their text. So the edited file does not
+    depend on the order in which its edits were planned.
+    """
 
     start: int
     end: int
@@ -109,7 +113,7 @@ def _body(pairs: list[tuple[bytes | None, bytes | None]], encoding: str) -> Iter
 
 
 def _display_line(line: bytes | None, encoding: str) -> str:
-    return decode((line or b"").removesuffix(b"\r"), encoding).replace("\r", " ")
+    return decode_text((line or b"").removesuffix(b"\r"), encoding).replace("\r", " ")
 
 
 _BPMS = re.compile(rb"#BPMS:([^;]*)", re.IGNORECASE)

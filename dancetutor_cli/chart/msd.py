@@ -133,7 +133,7 @@ def _fits(data: bytes, encoding: str) -> bool:
     return wrong * 20 <= len(_HIGH.findall(data))
 
 
-def decode(value: bytes, encoding: str) -> str:
+def decode_text(value: bytes, encoding: str) -> str:
     """Return a value as text that is safe to print: invalid bytes become U+FFFD; line breaks and tabs stay."""
     text = value.decode("utf-8" if encoding == "utf-8-sig" else encoding, errors="replace")
     if _is_plain(text):

@@ -82,7 +82,7 @@ class SongReader:
             plain = value.decode("ascii")
             if plain.isprintable():
                 return plain.strip()
-        return msd.decode(msd.plain(self.data[a:b]), self.encoding).strip()
+        return msd.decode_text(msd.plain(self.data[a:b]), self.encoding).strip()
 
     def values(self, tags: Iterable[Tag]) -> dict[str, str]:
         """Return the first value of each tag by name; both values of a #DISPLAYBPM are joined as written, "90:180"."""

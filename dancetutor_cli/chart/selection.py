@@ -53,12 +53,12 @@ def is_excluded(name: str, exclude: Sequence[str]) -> bool:
         return False
     from fnmatch import fnmatchcase
 
-    parts = name.lower().split("/")
-    means = {*parts, *("/".join(parts[:end]) for end in range(1, len(parts) + 1))}
-    return any(fnmatchcase(one, pattern.lower().rstrip("/")) for pattern in exclude for one in means)
+    names = name.lower().split("/")
+    names_and_paths = {*names, *("/".join(names[:end]) for end in range(1, len(names) + 1))}
+    return any(fnmatchcase(one, pattern.lower().rstrip("/")) for pattern in exclude for one in names_and_paths)
 
 
-def without_links_out(paths: Sequence[Path], files: Sequence[Path]) -> tuple[list[Path], list[Path]]:
+def split_links_out(paths: Sequence[Path], files: Sequence[Path]) -> tuple[list[Path], list[Path]]:
     """Split the result of `find_files` into files to write, and links that lead out of the searched folders.
 
     A folder of songs may come from a stranger, and a link in it may lead to any file of the user. A link that the user
@@ -88,12 +88,30 @@ def is_chart_name(name: str) -> bool:
     return name.lower().endswith(CHART_SUFFIXES) and not name.startswith(_RESOURCE_FORK)
 
 
-def twin(path: Path) -> Path | None:
-    """Return the .ssc beside a .sm of the same name, or the .sm beside a .ssc, or None. Games load the .ssc."""
+# A song may have a .sm and a .ssc of the same name. Games load the .ssc, and so a run that needs one file does.
+
+
+def is_preferred(path: Path) -> bool:
+    """Whether games load a file with this name although there may be one of the other kind: whether it is a .ssc."""
+    return path.suffix.lower() == ".ssc"
+
+
+def has_preferred_twin(path: Path) -> bool:
+    """Whether games load another file in place of this one: the .ssc beside a .sm."""
+    return not is_preferred(path) and twin(path) is not None
+
+
+def twin_names(path: Path) -> tuple[Path, ...]:
+    """Return the names that the .sm beside a .ssc may have, or the .ssc beside a .sm; none for another file."""
     if path.suffix.lower() not in SONG_SUFFIXES:
-        return None
-    other = ".sm" if path.suffix.lower() == ".ssc" else ".ssc"
-    for candidate in (path.with_suffix(other), path.with_suffix(other.upper())):
+        return ()
+    other = ".sm" if is_preferred(path) else ".ssc"
+    return path.with_suffix(other), path.with_suffix(other.upper())
+
+
+def twin(path: Path) -> Path | None:
+    """Return the .ssc beside a .sm of the same name, or the .sm beside a .ssc; None if there is none."""
+    for candidate in twin_names(path):
         if os.path.isfile(candidate):  # noqa: PTH113 (Path.is_file may raise)
             return candidate
     return None
@@ -104,11 +122,11 @@ def one_song(path: Path) -> Path:
     if not os.path.isdir(path):  # noqa: PTH112 (Path.is_dir may raise)
         return path
     found = find_files([path])
-    songs = [file for file in found if file.suffix.lower() == ".ssc" or (twin(file) is None and file != path)]
+    songs = [file for file in found if file != path and not has_preferred_twin(file)]
     return songs[0] if len(songs) == 1 else path
 
 
-_LARGE = 200_000  # bytes
+_LARGEST_READ = 200_000  # bytes; a larger file is not read only for a measure of its work
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,7 +170,7 @@ class Selection:
             and self.index in (None, chart.index)
         )
 
-    def one(self, song: Song) -> Chart:
+    def only_chart(self, song: Song) -> Chart:
         """Return the only selected chart of `song`. Raises `UsageError` with a list of charts if none or several match.
 
         For a chart for several players, return the part of the selected player, or of the first player.
@@ -163,7 +181,7 @@ class Selection:
         if len(charts) > 1:
             raise UsageError(f"{song.path}: several charts match; choose one with --index N: {_listed(charts)}")
         chart = charts[0]
-        players = self.parts(chart)
+        players = self.player_parts(chart)
         if not players:
             raise UsageError(
                 f"{song.path}: {chart.label} has no notes for --player {self.player}; choose 1 to {len(chart.players)}"
@@ -172,7 +190,7 @@ class Selection:
             raise UsageError(f"{song.path}: {chart.label} is for one player; leave --player out")
         return players[0]
 
-    def parts(self, chart: Chart) -> tuple[Chart, ...]:
+    def player_parts(self, chart: Chart) -> tuple[Chart, ...]:
         """Return the charts to find feet for: the chart itself or, for several players, the selected players' parts."""
         from dancetutor_cli.chart.players import player_charts
 
@@ -190,7 +208,7 @@ def note_bytes(path: Path, selection: Selection, data: bytes | None = None) -> i
 
     try:
         size = path.stat().st_size if data is None else len(data)
-        if selection.is_all or size > _LARGE:
+        if selection.is_all or size > _LARGEST_READ:
             return size
         song = reader.load(path) if data is None else reader.parse(data, path)
         return sum(end - start for start, end in (one.notes_span for one in selection.charts(song)))
@@ -242,7 +260,7 @@ class FolderReader:
         from dancetutor_cli.chart.reader import load  # needs numpy, which `--help` does without
 
         for path in find_files(self.paths, self.exclude):
-            if path.suffix.lower() == ".sm" and path not in self.paths and twin(path) is not None:
+            if path not in self.paths and has_preferred_twin(path):
                 continue
             try:
                 song = load(path)

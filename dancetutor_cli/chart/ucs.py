@@ -107,7 +107,7 @@ class _Text:
 
     def _tag(self, line: int, text: bytes) -> tuple[str, str]:
         """Return the name and the value of a line `:Name=value`; "" for an unknown name."""
-        given, equals, value = msd.decode(text[1:], msd.encoding_of(text)).partition("=")
+        given, equals, value = msd.decode_text(text[1:], msd.encoding_of(text)).partition("=")
         name, value = _NAMES.get(given.strip().lower(), ""), value.strip()
         if not equals or not given.strip():
             raise ChartError(self.path, f"':{msd.quote(given)}' is not a line like :BPM=150", line)

@@ -16,7 +16,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from dancetutor_cli.chart.names import COLUMNS, DIFFICULTIES
-from dancetutor_cli.chart.selection import find_files, without_links_out
+from dancetutor_cli.chart.selection import find_files, split_links_out
 from dancetutor_cli.run.errors import UsageError, did_you_mean
 from dancetutor_cli.run.files import UCS_SUFFIX, plain_name, write_atomic
 from dancetutor_cli.run.foreign_text import safe
@@ -94,7 +94,7 @@ class Second(Number):
 
 def within_folders(paths: Sequence[Path], files: Sequence[Path]) -> list[Path]:
     """Return the files of a search that may be written; print a warning for each link out of the searched folders."""
-    kept, links = without_links_out(paths, files)
+    kept, links = split_links_out(paths, files)
     where = "outside the folder that is searched; it is not changed; name it to change it"
     warn(f"{link}: is a link to {os.path.realpath(link)}, {where}" for link in links)
     return kept

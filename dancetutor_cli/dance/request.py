@@ -131,7 +131,7 @@ def read_chart(request: DanceRequest, section: str | None = None) -> ChartChoice
         check_part(section)
     choice = choice_for(request.path, request.preset)
     song = load(request.path)
-    first = request.selection.one(song)
+    first = request.selection.only_chart(song)
     chart = song.charts[first.index]
     parts: tuple[Chart, ...] = (first,)
     if request.selection.player is None and len(chart.players) > 1:

@@ -34,7 +34,7 @@ def chart_result(subject: ChartSubject, task: AnalyzeTask) -> ChartResult:
 
     chart, play = subject.chart, subject.play
     preset = preset_for(chart, task.path, task.presets)
-    findings, causes = _findings(subject, task, preset)
+    findings, causes = _check_and_explain(subject, task, preset)
     return ChartResult(
         index=chart.index,
         steps_type=chart.written_type,
@@ -65,7 +65,7 @@ def _rows(subject: ChartSubject) -> str:
     return "[]" if subject.play is None else json_rows(subject.play, subject.file_lines)
 
 
-def _findings(
+def _check_and_explain(
     subject: ChartSubject, task: AnalyzeTask, preset: Preset
 ) -> tuple[tuple[Finding, ...], tuple[Cause, ...] | None]:
     """Return the findings of the linter and the causes of doublesteps.
@@ -320,7 +320,7 @@ def solve_selected(song: Song, charts: tuple[Chart, ...], task: AnalyzeTask) -> 
     from dancetutor_cli.feet.solved import solve_song
     from dancetutor_cli.lint.subject import subject_of
 
-    parts = [part for chart in charts for part in task.selection.parts(chart)]
+    parts = [part for chart in charts for part in task.selection.player_parts(chart)]
     return map(subject_of, solve_song(song, [(part, preset_for(part, task.path, task.presets)) for part in parts]))
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from dancetutor_cli.chart.names import TICKS_PER_BEAT, is_lights
 from dancetutor_cli.chart.pack_files import find_settings_file, pack_folder, read_pack_ini
+from dancetutor_cli.chart.selection import is_preferred
 from dancetutor_cli.lint.findings import RANKS, Finding
 from dancetutor_cli.lint.results import FileResult
 from dancetutor_cli.lint.rule import ChartRule, FileRule, PackRule, PackSong, ReaderRule, Rule, all_rules
@@ -210,7 +211,7 @@ class PackSyncs:
         self._names.setdefault(folder, os.fspath(folder) if path.is_absolute() else os.path.relpath(folder))
         songs = self._songs.setdefault(folder, {})
         key = os.fspath(path.absolute().with_suffix(""))
-        if key not in songs or path.suffix.lower() == ".ssc":
+        if key not in songs or is_preferred(path):
             songs[key] = path.absolute().parent.name, sync
 
     @property

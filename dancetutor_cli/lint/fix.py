@@ -118,7 +118,7 @@ def _fix(job: FixTask) -> FixOutcome:
     session = FixSession(song, task.settings, preset_of)
     if job.safe:
         for chart in task.selection.charts(song):
-            session.safe(chart.index)
+            session.make_safe_fixes(chart.index)
     for finding, player in job.findings:
         session.fix(finding.chart or 0, finding, player)
     new = session.song.data
@@ -171,11 +171,13 @@ class FixSession:
     unfixed: list[SkippedFinding] = field(default_factory=list)
     _latest: _State | None = None
 
-    def safe(self, chart: int) -> None:
+    def make_safe_fixes(self, chart: int) -> None:
         """Make the safe fixes of a chart that cause no new finding: all fixes of a rule at once, or else one by one."""
         for player in range(max(len(self.song.charts[chart].players), 1)):
             for rule in fix_edits.RULES:
-                fixes = [fix for fix in self._safe_fixes(self._part(chart, player + 1)) if fix.rule == rule]
+                fixes = [
+                    fix for fix in self._safe_fixes(_chart_or_part(self.song, chart, player + 1)) if fix.rule == rule
+                ]
                 if fixes and not self._try(self._state(chart, player + 1), fixes):
                     for fix in fixes:
                         self._try(self._state(chart, player + 1), [fix])
@@ -218,14 +220,10 @@ class FixSession:
         grid = rules[fix_edits.OFF_GRID]["grid"] if fix_edits.OFF_GRID in rules else [TICKS_PER_MEASURE]
         return fix_edits.safe_fixes(self.song.data, chart, [int(name) for name in grid])
 
-    def _part(self, index: int, player: int) -> Chart:
-        """Return a chart as it is now, or one player's part of a chart for two."""
-        return _part(self.song, index, player)
-
     def _state(self, index: int, player: int = 0) -> _State:
-        chart = self._part(index, player)
+        chart = _chart_or_part(self.song, index, player)
         if self._latest is None or self._latest.chart is not chart:
-            self._latest = _State.of(self.song, chart, self.settings, self.preset_of(chart))
+            self._latest = _check(self.song, chart, self.settings, self.preset_of(chart))
         return self._latest
 
     def _try(self, state: _State, fixes: Sequence[Fix], finding: Finding | None = None) -> bool:
@@ -234,11 +232,11 @@ class FixSession:
         if len({splice.start for splice in splices}) < len(splices):
             return False
         after = check_edit(self.song, apply(self.song.data, splices), lambda one: one.index == state.chart.index)
-        chart = _part(after, state.chart.index, state.chart.player)
+        chart = _chart_or_part(after, state.chart.index, state.chart.player)
         if not _as_meant(state.chart, chart, fixes) or not _is_other_player_unchanged(state.chart, after, fixes):
             return False
         if finding is not None or not all(fix.is_silent for fix in fixes):
-            new = _State.of(after, chart, self.settings, self.preset_of(chart))
+            new = _check(after, chart, self.settings, self.preset_of(chart))
             if not new.is_no_worse_than(state) or (finding and _count(new, finding) >= _count(state, finding)):
                 return False
             self._latest = new
@@ -255,11 +253,6 @@ class _State:
     subject: ChartSubject
     findings: tuple[Finding, ...]
 
-    @staticmethod
-    def of(song: Song, chart: Chart, settings: Settings, preset: Preset) -> _State:
-        subject = solved_chart(song, chart, preset)
-        return _State(chart, subject, check_chart(subject, settings))
-
     def is_no_worse_than(self, before: _State) -> bool:
         """Whether there is no finding that was not there before.
 
@@ -268,12 +261,24 @@ class _State:
         return not _finding_counts(self.findings) - _finding_counts(before.findings)
 
 
-def _part(song: Song, index: int, player: int) -> Chart:
+def _check(song: Song, chart: Chart, settings: Settings, preset: Preset) -> _State:
+    """Solve and check a chart."""
+    subject = solved_chart(song, chart, preset)
+    return _State(chart, subject, check_chart(subject, settings))
+
+
+def _chart_or_part(song: Song, index: int, player: int) -> Chart:
+    """Return a chart, or one player's part of a chart for two."""
     chart = song.charts[index]
     return chart.players[player - 1] if chart.players and player else chart
 
 
 def _finding_counts(findings: Iterable[Finding]) -> Counter[tuple[str, float | None]]:
+    """Return the number of findings of each rule and beat.
+
+    Left out are rules that report only the worst place of a chart: a fix of that place makes another one the worst.
+    For the rules of the reader all beats count together, see `_State.is_no_worse_than`.
+    """
     return Counter(
         (one.rule, None if issubclass(all_rules()[one.rule], ReaderRule) else one.beat)
         for one in findings
@@ -291,7 +296,7 @@ def _is_other_player_unchanged(before: Chart, after: Song, fixes: Sequence[Fix])
     """Whether the other player of a chart for two has the same notes as before, and none where a note moved to."""
     if before.written is None:
         return True
-    places = {(tick, column + before.first_column) for fix in fixes for tick, column, _, _ in fix.come}
+    places = {(tick, column + before.first_column) for fix in fixes for tick, column, _, _ in fix.new_notes}
     whole = before.written.notes
     mine = {(tick, column + before.first_column) for tick, column, _, _ in notes_of(before.notes)}
     others = set(zip(whole.tick.tolist(), whole.column.tolist(), strict=True)) - mine
@@ -304,14 +309,14 @@ def _is_other_player_unchanged(before: Chart, after: Song, fixes: Sequence[Fix])
 
 def _as_meant(before: Chart, after: Chart, fixes: Sequence[Fix]) -> bool:
     """Whether a chart reads as the chart before with these fixes, note by note, and everything else is unchanged."""
-    gone = frozenset(note for fix in fixes for note in fix.gone)
-    come = frozenset(note for fix in fixes for note in fix.come)
+    old = frozenset(note for fix in fixes for note in fix.old_notes)
+    new = frozenset(note for fix in fixes for note in fix.new_notes)
     same = ("steps_type", "difficulty", "meter", "description", "columns", "timing", "tags", "notes_span")
     notes = notes_of(before.notes)
     return (
-        gone <= notes
-        and not come & (notes - gone)
-        and notes_of(after.notes) == (notes - gone) | come
+        old <= notes
+        and not new & (notes - old)
+        and notes_of(after.notes) == (notes - old) | new
         and all(getattr(before, name) == getattr(after, name) for name in same)
         and bool((before.rows.tick == after.rows.tick).all())
     )

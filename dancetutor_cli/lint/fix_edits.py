@@ -29,20 +29,20 @@ class Fix:
     """An edit that replaces a few characters of a chart's note data, one for one.
 
     rule : code of the rule whose findings it removes; lines : 1-based lines of the findings; words : the edit in words
-    gone, come : the notes that the games no longer read, and the notes that they read instead
+    old_notes, new_notes : the notes that the games no longer read, and the notes that they read instead
     """
 
     rule: str
     lines: frozenset[int]
     words: str
     splices: tuple[Splice, ...]
-    gone: frozenset[Note] = field(default_factory=frozenset)
-    come: frozenset[Note] = field(default_factory=frozenset)
+    old_notes: frozenset[Note] = field(default_factory=frozenset)
+    new_notes: frozenset[Note] = field(default_factory=frozenset)
 
     @property
     def is_silent(self) -> bool:
         """Whether the games read the same notes after the fix."""
-        return self.gone == self.come
+        return self.old_notes == self.new_notes
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +106,7 @@ _TAPS = (b"1", b"L", b"l", b"X", b"Y")
 def move_notes(data: bytes, chart: Chart, finding: Finding, edit: Suggestion) -> Fix | None:
     """Return the fix; None if a row is not a single plain row that has the note and an empty cell for it."""
     cells: list[tuple[Cell, bytes]] = []
-    gone, come = set[Note](), set[Note]()
+    old_notes, new_notes = set[Note](), set[Note]()
     notes = chart.notes
     for move in edit.notes:
         row = cells_at(data, chart, move.tick)
@@ -115,10 +115,10 @@ def move_notes(data: bytes, chart: Chart, finding: Finding, edit: Suggestion) ->
         if away is None or there is None or away.text not in _TAPS or there.text != EMPTY or len(found) != 1:
             return None
         cells += [(away, EMPTY), (there, away.text)]
-        gone.add((move.tick, move.column, int(notes.kind[found[0]]), -1))
-        come.add((move.tick, move.to, int(notes.kind[found[0]]), -1))
+        old_notes.add((move.tick, move.column, int(notes.kind[found[0]]), -1))
+        new_notes.add((move.tick, move.to, int(notes.kind[found[0]]), -1))
     line = frozenset({finding.line or 0})
-    return Fix(finding.rule, line, edit.words, replace_cells(cells), frozenset(gone), frozenset(come))
+    return Fix(finding.rule, line, edit.words, replace_cells(cells), frozenset(old_notes), frozenset(new_notes))
 
 
 # The safe fixes: mines between the ends of a hold, halves of holds, notes less than 3 ms off the grid.
@@ -190,8 +190,8 @@ def _without_mines(head: Cell, mines: list[Cell], tail: Cell) -> Fix:
         frozenset({head.line, tail.line}),
         words,
         replace_cells((mine, EMPTY) for mine in mines),
-        gone=frozenset((mine.tick, mine.column, int(Kind.MINE), -1) for mine in mines),
-        come=frozenset({(head.tick, head.column, int(kind), tail.tick)}),
+        old_notes=frozenset((mine.tick, mine.column, int(Kind.MINE), -1) for mine in mines),
+        new_notes=frozenset({(head.tick, head.column, int(kind), tail.tick)}),
     )
 
 
@@ -207,10 +207,10 @@ def _off_grid(data: bytes, chart: Chart, grid: Sequence[int]) -> Iterator[Fix]:
         if len(moves) < count or len({cell.tick for cell, _ in cells}) < 2 * count:
             continue
         changed = {note: _shifted(note, moves) for note in known}
-        gone = frozenset(note for note, new in changed.items() if note != new)
+        old = frozenset(note for note, to in changed.items() if note != to)
         words = f"move {count} row{'s' if count > 1 else ''} from beat {round(first / TICKS_PER_BEAT, 3):g} to the grid"
-        come = frozenset(changed[note] for note in gone)
-        yield Fix(OFF_GRID, frozenset({line}), f"{words}, each by less than 3 ms", replace_cells(cells), gone, come)
+        new = frozenset(changed[note] for note in old)
+        yield Fix(OFF_GRID, frozenset({line}), f"{words}, each by less than 3 ms", replace_cells(cells), old, new)
 
 
 def _is_on(tick: int, grid: Sequence[int]) -> bool:

@@ -167,14 +167,14 @@ def _file(values: list[Any]) -> FileResult:
         artist,
         error,
         tuple(warnings),
-        _findings(findings),
+        _read_findings(findings),
         tuple(map(_chart, charts)),
         tuple(unselected),
         _sync(sync),
     )
 
 
-def _findings(listed: Iterable[list[Any]]) -> tuple[Finding, ...]:
+def _read_findings(listed: Iterable[list[Any]]) -> tuple[Finding, ...]:
     for values in listed:
         values[_EXCERPT] = tuple(ExcerptRow(*row) for row in values[_EXCERPT])
     return tuple(Finding(*values) for values in listed)
@@ -182,7 +182,7 @@ def _findings(listed: Iterable[list[Any]]) -> tuple[Finding, ...]:
 
 def _chart(values: list[Any]) -> ChartResult:
     given = dict(zip(_CHART_FIELDS, values, strict=True))
-    given["findings"] = _findings(given["findings"])
+    given["findings"] = _read_findings(given["findings"])
     if given["figures"] is not None:
         mean, peak, breakdown, stream, tech, seconds, facing, hands = given["figures"]
         given["figures"] = Figures(mean, peak, breakdown, stream, tech, seconds, tuple(facing), hands)

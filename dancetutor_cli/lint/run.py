@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.chart.pack_files import find_settings_file, places_of_feet
-from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.chart.selection import Selection, twin_names
 from dancetutor_cli.feet.preset import PresetChoice, choice_of
 from dancetutor_cli.lint.analysis import AnalyzeTask, ResultOptions, analyze_files, failure_result
 from dancetutor_cli.lint.check import PackSyncs
@@ -94,7 +94,7 @@ class LintRun:
         If a configuration cannot be read, the files that it names are left out, without an error.
         """
         yield from places_of_feet(path)
-        yield path.with_suffix(".sm" if path.suffix.lower() == ".ssc" else ".ssc")
+        yield from twin_names(path)
         if self.request.config is not None:
             yield Path(self.request.config)
         with suppress(DancetutorError):

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from dancetutor_cli.chart.audio import AudioHead, Sound, decode, read_head
+from dancetutor_cli.chart.audio import AudioHead, Sound, decode_music, read_head
 from dancetutor_cli.chart.model import Chart, Song
 from dancetutor_cli.chart.music import music_file
 from dancetutor_cli.chart.names import is_lights
@@ -96,7 +96,7 @@ def hear(music: Path) -> Heard:
     key = music, status.st_size, status.st_mtime_ns
     if key not in _heard:
         head: AudioHead = read_head(music)
-        sound: Sound = decode(music, head)
+        sound: Sound = decode_music(music, head)
         if len(sound.samples) < sound.rate:
             raise FileError(music, "holds less than a second of music")
         _heard[key] = Heard(onsets(sound), sound.silence, sound.clipped)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from dancetutor_cli.chart.edits import apply, unified_diff
 from dancetutor_cli.chart.pack_files import find_settings_file
 from dancetutor_cli.chart.reader import load, parse
-from dancetutor_cli.chart.selection import Selection
+from dancetutor_cli.chart.selection import Selection, is_preferred
 from dancetutor_cli.feet.preset import PresetChoice, choice_of, preset_for
 from dancetutor_cli.markers import background, edit
 from dancetutor_cli.markers.model import CheckLine, FileChange, NoteChange
@@ -85,8 +85,8 @@ def annotate_song(items: Sequence[Item], request: AnnotateRequest) -> list[Annot
     if request.write:
         for folder in sorted({item.target.parent for item in items}):
             remove_leftovers(folder)
-    ssc = any(item.source.suffix.lower() == ".ssc" for item in items)
-    return [_attempt(item, request, ssc and item.source.suffix.lower() != ".ssc") for item in items]
+    is_pair = any(is_preferred(item.source) for item in items)
+    return [_attempt(item, request, is_pair and not is_preferred(item.source)) for item in items]
 
 
 def _attempt(item: Item, request: AnnotateRequest, is_sm_of_pair: bool) -> AnnotateOutcome:

@@ -219,7 +219,7 @@ def _content(
         notes=note_track(chart, shown, parse_segments("")),
         ticks=ticks_of(chart),
         beats=beats_of(chart),
-        findings=list(_findings(solved)),
+        findings=list(_findings_by_player(solved)),
         character=page.character,
         motions=motions,
         directions=pad.directions,
@@ -251,7 +251,7 @@ def _otherwise(motions: Sequence[Motion], play: Play) -> list[int]:
     return sorted({c.row for c in touches if limbs[c.row, c.column] != c.limb})
 
 
-def _findings(solved: tuple[Solved, ...]) -> Iterator[Finding]:
+def _findings_by_player(solved: tuple[Solved, ...]) -> Iterator[Finding]:
     """Return the findings of the linter; in a chart for two, each with its player."""
     from dancetutor_cli.lint.check import findings_of
     from dancetutor_cli.lint.subject import subject_of

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
 from dancetutor_cli.chart.pack_files import pack_folder, read_pack_ini
+from dancetutor_cli.chart.selection import is_preferred
 from dancetutor_cli.lint.findings import RANKS, Finding
 from dancetutor_cli.lint.results import ChartResult, FileResult
 from dancetutor_cli.lint.techniques import TEN, ComparedChart, TechniqueComparison
@@ -109,9 +110,9 @@ class Pack:
         if _PAIR in rules:
             self.problems["differ"].append(title)
         key = os.fspath(path.with_suffix(""))
-        if key not in self._needs or path.suffix.lower() == ".ssc":
+        if key not in self._needs or is_preferred(path):
             self._needs[key] = FileNeed.of(result)
-        if key not in self._results or path.suffix.lower() == ".ssc":
+        if key not in self._results or is_preferred(path):
             charts = tuple(replace(chart, findings=(), rows=None, causes=None) for chart in result.charts)
             self._results[key] = replace(result, findings=(), charts=charts)
 

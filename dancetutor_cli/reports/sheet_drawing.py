@@ -78,7 +78,7 @@ def system(sheet: Sheet, which: int) -> str:
         *_notes(sheet, ticks),
         *_unsure_marks(sheet, ticks),
         *_feet(sheet, ticks),
-        *_findings(sheet, ticks),
+        *_finding_flags(sheet, ticks),
     ]
     return "\n".join(parts)
 
@@ -260,7 +260,7 @@ def _pose(sheet: Sheet, x: float, y: float, feet: Sequence[int], facing: float) 
     return tag("g", title(sheet.say("crossed", degrees=f"{facing:g}")) + "".join(parts))
 
 
-def _findings(sheet: Sheet, ticks: range) -> Iterator[str]:
+def _finding_flags(sheet: Sheet, ticks: range) -> Iterator[str]:
     """Yield a line across the row of each finding, and the code of its rule beside it."""
     by_tick: dict[int, list[Finding]] = {}
     for finding in sheet.findings:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dancetutor_cli.chart.audio import LONGEST, decode, read_head
+from dancetutor_cli.chart.audio import LONGEST, decode_music, read_head
 from dancetutor_cli.run import ffmpeg
 from dancetutor_cli.run.errors import DancetutorError, FileError
 
@@ -50,7 +50,7 @@ def encoded(source: Path, kind: str) -> Path:
 
 def heard(path: Path) -> float:
     """Second at which the click is heard: the first sample that is a tenth of the loudest."""
-    sound = decode(path, read_head(path))
+    sound = decode_music(path, read_head(path))
     loud = np.abs(sound.samples)
     return float(sound.start + int((loud > 0.1 * loud.max()).argmax()) / sound.rate)
 
@@ -76,7 +76,7 @@ def test_the_head_reports_what_a_decoder_finds(tmp_path: Path, kind: str, channe
     head = read_head(path)
     assert head.kind == {".ogg": "vorbis", ".opus": "opus"}.get(kind, kind.rsplit(".", 1)[-1])
     assert (head.rate, head.channels) == (48000 if kind == ".opus" else 44100, channels)
-    sound = decode(path, head)
+    sound = decode_music(path, head)
     assert head.seconds == pytest.approx(sound.start + len(sound.samples) / sound.rate, abs=0.03)
 
 
@@ -157,7 +157,7 @@ def test_strangers_files_are_one_line_or_little_music(tmp_path: Path, name: str)
     path = tmp_path / name
     path.write_bytes(strangers()[name])
     try:
-        sound = decode(path, read_head(path))
+        sound = decode_music(path, read_head(path))
     except DancetutorError as error:
         assert "\n" not in str(error)
     else:
@@ -181,9 +181,9 @@ def test_what_is_decoded_is_bounded(tmp_path: Path) -> None:
         out.writeframes(bytes(8000 * (round(LONGEST) + 60)))
     head = read_head(path)
     assert head.seconds == pytest.approx(LONGEST + 60)
-    sound = decode(path, head, seconds=LONGEST * 2)
+    sound = decode_music(path, head, seconds=LONGEST * 2)
     assert len(sound.samples) / sound.rate == pytest.approx(LONGEST, abs=0.01)
-    assert len(decode(path, head, seconds=2.0).samples) / sound.rate == pytest.approx(2.0, abs=0.01)
+    assert len(decode_music(path, head, seconds=2.0).samples) / sound.rate == pytest.approx(2.0, abs=0.01)
 
 
 def test_silence_and_clipping_are_counted(tmp_path: Path) -> None:
@@ -194,5 +194,5 @@ def test_silence_and_clipping_are_counted(tmp_path: Path) -> None:
         out.setsampwidth(2)
         out.setframerate(44100)
         out.writeframes(samples.astype("<i2").tobytes())
-    sound = decode(path, read_head(path))
+    sound = decode_music(path, read_head(path))
     assert sound.silence == pytest.approx(1.0, abs=0.001) and sound.clipped == pytest.approx(0.25, abs=0.001)

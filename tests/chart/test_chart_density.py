@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from dancetutor_cli.chart.density import breakdown, density
+from dancetutor_cli.chart.density import density, describe_stream
 from dancetutor_cli.chart.model import Chart
 from dancetutor_cli.chart.reader import parse
 
@@ -31,7 +31,7 @@ def song(*measures: str, bpms: str = "0=120") -> Chart:
     ],
 )
 def test_breakdown(stream: list[bool], text: str) -> None:
-    assert breakdown(stream) == text
+    assert describe_stream(stream) == text
 
 
 def test_density_of_a_chart() -> None:

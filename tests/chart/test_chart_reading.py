@@ -144,7 +144,9 @@ def test_sm_reads_timing_that_follows_the_notes() -> None:
 def test_encodings(encoding: str, words: str) -> None:
     data = f"#TITLE:{words};".encode(encoding)
     assert msd.encoding_of(data + CHART) == encoding
-    assert msd.decode(words.encode(encoding), encoding).lstrip("\ufeff") == words.replace("ソ", words[words.find("ソ")])
+    assert msd.decode_text(words.encode(encoding), encoding).lstrip("\ufeff") == words.replace(
+        "ソ", words[words.find("ソ")]
+    )
 
 
 @pytest.mark.parametrize(

@@ -144,11 +144,11 @@ def test_selection(tmp_path: Path) -> None:
     assert picked("dance-double", "Heavy") == [3]
     assert picked(None, None, 2) == [2]
     assert picked("pump-single") == []
-    assert Selection("dance-double").one(found).index == 3
+    assert Selection("dance-double").only_chart(found).index == 3
     with pytest.raises(UsageError, match=r"--index N: 1: dance-single Hard 9, 2: dance-single Hard 10"):
-        Selection("dance-single", "hard").one(found)
+        Selection("dance-single", "hard").only_chart(found)
     with pytest.raises(UsageError, match="choose one with --index N: 0: dance-single Easy 3"):
-        Selection("pump-single").one(found)
+        Selection("pump-single").only_chart(found)
     with pytest.raises(UsageError, match="Beginner, Easy, Medium, Hard, Challenge, Edit"):
         Selection(None, "insane").charts(found)
 

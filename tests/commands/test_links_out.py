@@ -9,7 +9,7 @@ import pytest
 from annotating import POSIX, Said
 from click.testing import CliRunner
 
-from dancetutor_cli.chart.selection import find_files, without_links_out
+from dancetutor_cli.chart.selection import find_files, split_links_out
 from dancetutor_cli.commands.analyze import command as analyze
 
 NOTES = "1000\n0100\n0010\n0001\n"
@@ -57,8 +57,8 @@ def test_fix_leaves_a_link_out_of_the_folder_alone(pack: Path, tmp_path: Path) -
 def test_a_link_that_is_named_or_stays_within_is_no_way_out(pack: Path, tmp_path: Path) -> None:
     (pack / "dead.sm").symlink_to("nowhere.sm")
     files = find_files([pack])
-    kept, out = without_links_out([pack], files)
+    kept, out = split_links_out([pack], files)
     assert out == [pack / "out.sm"] and len(kept) == len(files) - 1
     both = [pack, pack / "out.sm"]
-    assert without_links_out(both, find_files(both))[1] == []
-    assert without_links_out([pack, tmp_path], find_files([pack, tmp_path]))[1] == []
+    assert split_links_out(both, find_files(both))[1] == []
+    assert split_links_out([pack, tmp_path], find_files([pack, tmp_path]))[1] == []

@@ -88,7 +88,7 @@ def test_the_notes_are_as_said_and_every_other_byte_is_the_same(seed: int) -> No
         assert len(new) == len(data) and all(
             a == b for n, (a, b) in enumerate(zip(data, new, strict=True)) if n not in places
         )
-        if fix.gone <= notes and not fix.come & (notes - fix.gone):
-            assert notes_of(after.charts[0].notes) == (notes - fix.gone) | fix.come, fix
+        if fix.old_notes <= notes and not fix.new_notes & (notes - fix.old_notes):
+            assert notes_of(after.charts[0].notes) == (notes - fix.old_notes) | fix.new_notes, fix
         if fix.is_silent:
             assert notes_of(after.charts[0].notes) == notes

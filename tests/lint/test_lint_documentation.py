@@ -5,6 +5,7 @@ The feet are forced to the letters beside the rows, so that a pattern stays what
 
 from __future__ import annotations
 
+import ast
 import inspect
 import re
 from dataclasses import dataclass
@@ -19,6 +20,7 @@ from dancetutor_cli.feet.overrides import Overrides
 from dancetutor_cli.feet.pads import load_pad
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solver.solve import solve_chart
+from dancetutor_cli.lint import rules
 from dancetutor_cli.lint.rule import ChartRule, ReaderRule, all_rules, match_codes, named_singly, rule_named
 from dancetutor_cli.lint.rule_settings import default_rules
 from dancetutor_cli.lint.subject import ChartSubject
@@ -113,3 +115,17 @@ def _has_itg() -> bool:
 @pytest.mark.parametrize(("former", "code"), [("ambiguous-start", "DT207"), ("feet-wish", "DT111")])
 def test_the_former_name_of_a_rule_still_selects_it(former: str, code: str) -> None:
     assert match_codes(former) == {code} == named_singly([former]) and rule_named(former.upper()).code == code
+
+
+def test_the_map_of_the_rules_says_who_names_a_rule_by_its_code() -> None:
+    """The modules outside of `lint.rules` with a code as a value; docstrings and messages may give examples."""
+    package = Path(inspect.getfile(rules)).parents[2]
+    using = set()
+    for path in package.rglob("*.py"):
+        if path.parent.name != "rules":
+            words = (
+                node.value for node in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(node, ast.Constant)
+            )
+            if any(isinstance(word, str) and re.fullmatch(r"DT\d{3}( \w+)?", word) for word in words):
+                using.add(".".join(path.relative_to(package).with_suffix("").parts))
+    assert using == set(re.findall(r"^    (\S+) _?[A-Za-z]", rules.__doc__ or "", re.MULTILINE))

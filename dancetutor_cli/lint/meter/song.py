@@ -79,7 +79,7 @@ class Meters:
             for one, played, label_scale in zip(of_pad, here, labels, strict=True):
                 at_1 = played.estimate
                 own = at_1 if one.sized.rate == 1.0 else on_scale(one.sized, at_1.scale, at_1.is_scale_known)
-                findings = self._findings(played, sure) if at_1.is_scale_known else ()
+                findings = self._check_meter(played, sure) if at_1.is_scale_known else ()
                 out[one.index] = MeterReport(own, _score(steps_type, one, label_scale), findings)
         return out
 
@@ -89,7 +89,7 @@ class Meters:
         place = {"line": chart.line, "column": 1, "chart": index}
         return RatedChart(chart.steps_type, chart.difficulty, chart.meter, chart.label, estimate, place)
 
-    def _findings(self, here: RatedChart, charts: list[RatedChart]) -> tuple[Finding, ...]:
+    def _check_meter(self, here: RatedChart, charts: list[RatedChart]) -> tuple[Finding, ...]:
         rules = self._settings.for_chart(self._song.path, here.steps_type, here.difficulty, here.meter)
         found: list[Finding] = []
         for code, rule in _rules().items():
