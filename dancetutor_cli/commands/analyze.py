@@ -26,7 +26,7 @@ from dancetutor_cli.commands.arguments import (
     rules,
     sources,
 )
-from dancetutor_cli.commands.drawings import check_plot, check_sheet, write_plot, write_sheet
+from dancetutor_cli.commands.drawings import check_sheet, check_sync_plot, write_sheet, write_sync_plot
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.pack import (
     PackReport,
@@ -258,7 +258,7 @@ def _run(run: LintRun, files: list[Source], options: AnalyzeOptions) -> int:
     if options.sheet is not None:
         check_sheet(options.sheet, len(files))
     if options.plot is not None:
-        check_plot(options.plot, len(files))
+        check_sync_plot(options.plot, len(files))
     if options.update_baseline and options.baseline is not None:
         check_file(options.baseline)
     if options.output_file is not None:
@@ -356,7 +356,7 @@ def _drawn(tasks: list[AnalyzeTask], options: AnalyzeOptions) -> Iterator[str]:
     if options.sheet is not None:
         yield write_sheet(options.sheet, tasks, options.language)
     if options.plot is not None:
-        yield write_plot(options.plot, tasks[0])
+        yield write_sync_plot(options.plot, tasks[0])
 
 
 def _keep(files: list[Source]) -> None:

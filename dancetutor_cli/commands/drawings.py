@@ -29,7 +29,7 @@ def write_sheet(path: Path, tasks: list[AnalyzeTask], language: str | None) -> s
     language : language of the sheet's words, a name in configs/languages; None: English
     """
     from dancetutor_cli.lint.analysis import drawable_charts
-    from dancetutor_cli.reports.sheet import html_page, make_sheet, svg_sheet
+    from dancetutor_cli.reports.sheet import make_sheet, sheets_html, svg_sheet
     from dancetutor_cli.run.languages import ENGLISH
 
     charts = list(drawable_charts(tasks[0]))
@@ -43,7 +43,7 @@ def write_sheet(path: Path, tasks: list[AnalyzeTask], language: str | None) -> s
             raise UsageError(f"an .svg holds one chart; choose with --difficulty or --index, or write .html: {has}")
         text = svg_sheet(*sheets[0])
     else:
-        text = html_page(sheets)
+        text = sheets_html(sheets)
     write_atomic(path, text.encode("utf-8", "replace"))
     return f"{path}: {len(sheets)} chart{'s' if len(sheets) > 1 else ''} drawn"
 
@@ -68,14 +68,14 @@ def _facts(chart: Drawable, sheet: Sheet) -> list[str]:
     return facts_of(sorted(chart.counts.items()), numbers)
 
 
-def check_plot(path: Path, files: int) -> None:
+def check_sync_plot(path: Path, files: int) -> None:
     """Raise the error of a plot that could not be written, before the work. files : number of files"""
     check_file(path, (".svg",))
     if files != 1:
         raise UsageError("--plot draws the sync of one file: name a file, not a folder")
 
 
-def write_plot(path: Path, task: AnalyzeTask) -> str:
+def write_sync_plot(path: Path, task: AnalyzeTask) -> str:
     """Draw the sync of a file, and return a line about it."""
     from dancetutor_cli.lint.analysis import load_song
     from dancetutor_cli.lint.song_sync import song_sync

@@ -100,11 +100,11 @@ class PackReport:
         if self._pack is None:
             return []
         from dancetutor_cli.reports.pack import pack_lines
-        from dancetutor_cli.reports.pack_page import html_page
+        from dancetutor_cli.reports.pack_page import pack_html
 
         if self._html is not None:
             changes = list(_changes(self._options, None)) if self._options.compare is not None else []
-            write_atomic(self._html, html_page(self._pack, changes).encode("utf-8", "replace"))
+            write_atomic(self._html, pack_html(self._pack, changes).encode("utf-8", "replace"))
         return pack_lines(self._pack, shutil.get_terminal_size().columns if self._brief else _WIDE) * self._is_told
 
     def summary_lines(self, tally: Tally) -> Iterator[str]:

@@ -134,7 +134,7 @@ def command(path: Path, selection: Selection, dance: DanceOptions, options: Rend
     film = options.output or path.with_name(into_file_name(path, selection))
     check_place(film, files)
     _render_one(path, selection, dance, replace(options, output=film))
-    _enter(film, files, options.quiet)
+    _write_background_entries(film, files, options.quiet)
 
 
 def _background(path: Path, options: RenderOptions) -> list[Path]:
@@ -162,10 +162,10 @@ def into_file_name(path: Path, selection: Selection) -> str:
     return "".join("_" if letter in ",;:=#\\" else letter for letter in stem) + ".dancetutor.mp4"
 
 
-def _enter(film: Path, files: Sequence[Path], quiet: bool) -> None:
-    from dancetutor_cli.markers.background import enter
+def _write_background_entries(film: Path, files: Sequence[Path], quiet: bool) -> None:
+    from dancetutor_cli.markers.background import write_entries
 
-    for line in enter(film, files):
+    for line in write_entries(film, files):
         if not quiet:
             click.echo(safe(line), err=line.startswith("warning"))
 

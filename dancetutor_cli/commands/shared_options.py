@@ -273,7 +273,7 @@ def check_targets(report_to: str | None, plot: Path | None) -> None:
 
 def write_report(report: MotionReport, report_to: str | None, plot: Path | None) -> None:
     """Print a report as a table if `report_to` is set; write it as JSON and as a diagram if files are named."""
-    from dancetutor_cli.reports.motion_report import as_json, print_report, write_plot
+    from dancetutor_cli.reports.motion_report import as_json, print_report, write_curves
 
     if report_to is not None:
         print_report(report)
@@ -283,5 +283,5 @@ def write_report(report: MotionReport, report_to: str | None, plot: Path | None)
             write_atomic(Path(report_to), (json.dumps(as_json(report), indent=1) + "\n").encode())
             click.echo(f"{report_to}: the report")
     if plot is not None:
-        write_plot(plot, report)
+        write_curves(plot, report)
         click.echo(f"{plot}: the plot")

@@ -20,7 +20,7 @@ from dancetutor_cli.dance.keys import key_times_of, reaches
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.run.files import write_atomic
-from dancetutor_cli.run.pictures import texture_bytes
+from dancetutor_cli.run.pictures import picture_bytes
 
 _BYTE, _SHORT, _USHORT, _UINT, _FLOAT = 5121, 5122, 5123, 5125, 5126
 _COMPONENTS = {"|u1": _BYTE, "<i2": _SHORT, "<u2": _USHORT, "<u4": _UINT, "<f4": _FLOAT}
@@ -259,4 +259,4 @@ def _four_joints(mesh: Mesh) -> tuple[NDArray[Any], NDArray[Any]]:
 
 def _png(pixels: NDArray[np.uint8]) -> bytes:
     opaque = bool((pixels[..., 3] == 255).all())
-    return texture_bytes(pixels[..., :3] if opaque else pixels, compress_level=7)
+    return picture_bytes(pixels[..., :3] if opaque else pixels, compress_level=7)

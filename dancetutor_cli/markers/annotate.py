@@ -157,7 +157,7 @@ class _Work:
         change = plan.mark(song, found.charts, self.request.styles, self.request.force)
         data = apply(song.data, change.splices)
         if into_file:
-            data, lacks = plan.add_charts(song, self.song, data, found.charts)
+            data, lacks = plan.with_lane_split_charts(song, self.song, data, found.charts)
             change.lacks += lacks
         plan.check(song, data)
         self._add_chart_file(data, change)
@@ -169,10 +169,7 @@ class _Work:
         for name in self.beside if alone or not found.charts else ():
             try:
                 for planned in file_style(name).write(self.song, self.item.target.parent, alone):
-                    if isinstance(planned, FileError):
-                        self.errors.append(str(planned))
-                    else:
-                        self._add_beside(planned)
+                    self._add_beside(planned)
             except FileError as error:
                 self.errors.append(str(error))
 
@@ -240,7 +237,7 @@ class _Work:
 
     def _without_background(self, song: Song) -> Song:
         """Return the song without the entries of films; the same object if there are none."""
-        splices = background.remove(song)
+        splices = background.remove_entries(song)
         return parse(apply(song.data, splices), song.path) if splices else song
 
     def _add_chart_file(self, data: bytes, change: NoteChange) -> None:
@@ -250,6 +247,9 @@ class _Work:
         self.counts += change.counts
 
     def _add_beside(self, change: FileChange) -> None:
+        if change.error is not None:
+            self.errors.append(str(change.error))
+            return
         self.changes.append(change)
         self.lacks += change.lacks
 

@@ -40,7 +40,7 @@ class EntryInsertion:
     later: tuple[float, ...]
 
 
-def check_name(name: str) -> None:
+def check_film_name(name: str) -> None:
     """Raise UsageError for a film's name that games cannot read, or that `annotate --strip` cannot recognise."""
     if not _NAME.fullmatch(name):
         raise UsageError(
@@ -55,7 +55,7 @@ def entry(song: Song, name: str) -> bytes:
     return f"{beat:.3f}={name}=1.000=0=0=0=StretchNoLoop====".encode()
 
 
-def add(song: Song, name: str) -> EntryInsertion:
+def insert_entry(song: Song, name: str) -> EntryInsertion:
     """Insert the entry of a film into a chart file without one. Raises FileError if there is no place for it."""
     text, tag = entry(song, name), _tag(song.data)
     if tag is None:
@@ -68,7 +68,7 @@ def add(song: Song, name: str) -> EntryInsertion:
     return EntryInsertion((Splice(at, at, text),), later)
 
 
-def remove(song: Song) -> list[Splice]:
+def remove_entries(song: Song) -> list[Splice]:
     """Return the replacements that remove this program's entries, and the tag if the program added it."""
     tag = _tag(song.data)
     if tag is None or not tag.spans:
@@ -78,10 +78,8 @@ def remove(song: Song) -> list[Splice]:
     entries: list[tuple[int, int]] = []
     for match in _ENTRY.finditer(value):
         first, last = match.start(), match.end() + len(_ALONE) * value.startswith(_ALONE, match.end())
-        if entries and value[entries[-1][1] : first].strip() in (
-            b",",
-            b"",
-        ):  # neighbours go with the comma between them
+        between = value[entries[-1][1] : first].strip() if entries else None
+        if between in (b",", b""):  # neighbours go with the comma between them
             entries[-1] = entries[-1][0], last
         else:
             entries.append((first, last))
@@ -157,8 +155,7 @@ def files_of_song(path: Path) -> list[Path]:
 
 def check_place(film: Path, files: Sequence[Path]) -> None:
     """Raise UsageError unless a film is beside its chart, with a name that this program recognises."""
-
-    check_name(film.name)
+    check_film_name(film.name)
     for file in files:
         if file.suffix.lower() == UCS_SUFFIX:
             raise UsageError(f"{file}: a .ucs file cannot name a film; leave --into-file out")
@@ -166,22 +163,22 @@ def check_place(film: Path, files: Sequence[Path]) -> None:
             raise UsageError(f"{film}: with --into-file the film must be in the song's folder, beside {file.name}")
 
 
-def enter(film: Path, files: Sequence[Path]) -> list[str]:
+def write_entries(film: Path, files: Sequence[Path]) -> list[str]:
     """Write or replace the entry of a film in chart files; return lines for people.
 
     Raises FileError for the first file that cannot be written; earlier files are written.
     """
-    return [line for file in files for line in _enter(film, file)]
+    return [line for file in files for line in _write_entry(film, file)]
 
 
-def _enter(film: Path, file: Path) -> list[str]:
+def _write_entry(film: Path, file: Path) -> list[str]:
     remove_leftovers(file.parent)
     song = load(file)
-    without = parse(apply(song.data, remove(song)), file)
-    added = add(without, film.name)
+    without = parse(apply(song.data, remove_entries(song)), file)
+    added = insert_entry(without, film.name)
     new = apply(without.data, added.splices)
     after = check_edit(song, new, free=(TAG,))
-    if parse(apply(new, remove(after)), file).data != without.data:
+    if parse(apply(new, remove_entries(after)), file).data != without.data:
         raise FileError(file, "refused, nothing was written: the entry could not be removed again")
     if new != song.data:
         write_atomic(file, new, expect=song.data)

@@ -86,13 +86,19 @@ def is_ours(chart: Chart) -> bool:
     return made and chart.description.startswith(_NAME)
 
 
-def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileChange | FileError]:
-    """Yield the .edit files of a song, or an error for a file that is not possible."""
-    for path, data in edit_files(song, feet):
-        if isinstance(data, FileError):
-            yield data
+def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileChange]:
+    """Yield the .edit file of each single chart of a song; a file that is not possible has an `error`."""
+    names = _names(song)
+    for one in feet:
+        if one.chart.steps_type != SOURCE:
+            continue
+        path = folder / _path(song, names[one.chart.index]).name
+        try:
+            data = _edit_file(song, one, names[one.chart.index])
+        except EditError as error:
+            yield FileChange(path, None, None, error=error)
         else:
-            yield change_of(folder / path.name, old_content(folder / path.name, song), data)
+            yield change_of(path, old_content(path, song), data)
 
 
 def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
@@ -101,23 +107,15 @@ def strip(song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:
         yield removal_of(path, read_bytes(path, CHART_LIMIT), None)
 
 
-def edit_files(song: Song, feet: Sequence[ChartFeet]) -> Iterator[tuple[Path, bytes | EditError]]:
-    """Yield for each single chart the path of its .edit file, and its bytes or the error."""
-    names = _names(song)
-    for one in feet:
-        if one.chart.steps_type != SOURCE:
-            continue
-        yield _path(song, names[one.chart.index]), _edit_file(song, one, names[one.chart.index])
-
-
 def _path(song: Song, name: str) -> Path:
     return song.path.with_name(f"{song.path.stem} {name}.edit")
 
 
-def _edit_file(song: Song, one: ChartFeet, name: str) -> bytes | EditError:
+def _edit_file(song: Song, one: ChartFeet, name: str) -> bytes:
+    """Return the content of a chart's .edit file. Raises EditError if it is not possible."""
     chart = one.chart
     if chart.timing != song.timing:
-        return EditError(
+        raise EditError(
             song.path, f"{chart.label}: has its own timing, which an .edit file cannot have; use --into-file"
         )
     folder = song.path.resolve().parent
@@ -125,15 +123,9 @@ def _edit_file(song: Song, one: ChartFeet, name: str) -> bytes | EditError:
     data = head + _sm_chart(chart, name, note_data(chart, one.play, b"\n"), b"\n")
     if len(data) > LIMIT:
         text = f"{chart.label}: as .edit it would have {len(data):,} bytes; games read {LIMIT:,}; use --into-file"
-        return EditError(song.path, text)
-    return _read_back(song, one, data)
-
-
-def _read_back(song: Song, one: ChartFeet, data: bytes) -> bytes | EditError:
-    """Return the file if the reader finds as many notes in it as in its chart, else an error."""
-    chart = parse(data, song.path.with_suffix(".sm")).charts[0]
-    if len(chart.notes) != len(one.chart.notes):
-        return EditError(song.path, f"{one.chart.label}: the .edit file would lose notes; nothing was written")
+        raise EditError(song.path, text)
+    if len(parse(data, song.path.with_suffix(".sm")).charts[0].notes) != len(chart.notes):
+        raise EditError(song.path, f"{chart.label}: the .edit file would lose notes; nothing was written")
     return data
 
 

@@ -72,12 +72,16 @@ class NoteChange:
 
 @dataclass(frozen=True, slots=True)
 class FileChange:
-    """A change of a file. old : its content, None if it does not exist; new : None to remove it"""
+    """A change of a file. old : its content, None if it does not exist; new : None to remove it
+
+    error : why the file cannot be written; then it stays as it is, and other files are written
+    """
 
     path: Path
     old: bytes | None
     new: bytes | None
     lacks: tuple[CheckLine, ...] = ()
+    error: FileError | None = None
 
     @property
     def is_change(self) -> bool:

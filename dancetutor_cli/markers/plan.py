@@ -97,7 +97,9 @@ def unmark(song: Song, charts: Sequence[Chart], names: Sequence[str], force: boo
     return change
 
 
-def add_charts(song: Song, before: Song, data: bytes, feet: Sequence[ChartFeet]) -> tuple[bytes, list[CheckLine]]:
+def with_lane_split_charts(
+    song: Song, before: Song, data: bytes, feet: Sequence[ChartFeet]
+) -> tuple[bytes, list[CheckLine]]:
     """Return the file with the lane-split charts added, and the reports of `--check` about them.
 
     song : the song without these charts; before : the song as read, perhaps with older ones; data : bytes of `song`

@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING, Protocol, cast
 if TYPE_CHECKING:
     from dancetutor_cli.chart.model import Chart, Song
     from dancetutor_cli.markers.model import ChartFeet, FileChange, NoteChange
-    from dancetutor_cli.run.errors import FileError
 
 IN_NOTES = ("measure", "rows")
 IN_FILES = ("sidecar", "smeditor", "edit", "theme")
@@ -41,10 +40,10 @@ class NoteStyle(Protocol):
 class FileStyle(Protocol):
     """A style that writes files beside a chart file."""
 
-    def write(self, song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileChange | FileError]:
+    def write(self, song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileChange]:
         """Yield the changed files of a song. folder : their place; old content is read there, or beside the song
 
-        Yields an error for a file that is not possible, and the other files as usual.
+        FileError if the song can have none of them; a single file that is not possible has an `error`.
         """
 
     def strip(self, song: Song, charts: Sequence[Chart]) -> Iterator[FileChange]:

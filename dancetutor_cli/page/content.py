@@ -24,7 +24,7 @@ from dancetutor_cli.film.scene.scene import PANEL, SOLE_RADIUS, TOE_AHEAD, Scene
 from dancetutor_cli.film.scene.shared import RING_SHARE, SHADOW_FADE
 from dancetutor_cli.page.document import Blob
 from dancetutor_cli.run.languages import load_language
-from dancetutor_cli.run.pictures import texture_bytes
+from dancetutor_cli.run.pictures import picture_bytes
 
 if TYPE_CHECKING:
     from dancetutor_cli.character.mesh import Character
@@ -193,7 +193,7 @@ def _runs(material: NDArray[np.int32], side: NDArray[np.int64]) -> list[tuple[in
 @lru_cache(maxsize=4)  # the pages of a folder have one dancer
 def _webp(shape: tuple[int, ...], pixels: bytes) -> bytes:
     image = np.frombuffer(pixels, dtype=np.uint8).reshape(shape)
-    return texture_bytes(image, ".webp", quality=QUALITY, method=6)
+    return picture_bytes(image, ".webp", quality=QUALITY, method=6)
 
 
 # The content of a page as plain data: chart, feet, findings and passages, the dancer and the look of the films.

@@ -21,8 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.film.scene.gl.available import SHADERS, web_source
+from dancetutor_cli.run import markup
 from dancetutor_cli.run.languages import Language, load_language
-from dancetutor_cli.run.markup import page
 from dancetutor_cli.run.reading import config_names
 
 # The numbers of a page: arrays in one compressed block, in a form that compresses well and is fast to read.
@@ -150,7 +150,7 @@ def document(doc: Mapping[str, Any], blob: Blob, music: bytes | None = None, kin
 def html_file(policy: str, title: str, style: str, body: str) -> bytes:
     """Return an HTML file with this Content-Security-Policy; body : markup; title : text."""
     icon = '<link rel="icon" href="data:,">\n'  # prevents a request of the browser for an icon
-    return page(policy, title, style, body, head=icon).encode("utf-8")
+    return markup.page(policy, title, style, body, head=icon).encode("utf-8")
 
 
 def list_page(title: str, items: str, style: str) -> bytes:

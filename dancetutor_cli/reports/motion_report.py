@@ -10,9 +10,9 @@ import numpy as np
 
 from dancetutor_cli.dance.quality.figures import MotionReport
 from dancetutor_cli.dance.units import Array
+from dancetutor_cli.run import markup
 from dancetutor_cli.run.errors import UsageError
 from dancetutor_cli.run.files import write_atomic
-from dancetutor_cli.run.markup import tag
 from dancetutor_cli.run.pictures import picture_bytes
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ WIDTH, PANEL, LEFT, TOP, GAP = 1200, 200, 70, 30, 50  # pixels
 INK, GRID, LINE, INPUT = "#222222", "#dddddd", "#3060c0", "#999999"
 
 
-def write_plot(path: Path, report: MotionReport) -> None:
+def write_curves(path: Path, report: MotionReport) -> None:
     """Write the report's curves as .svg or .png. Raises UsageError for another suffix, FileError if writing fails."""
     if path.suffix.lower() == ".svg":
         write_atomic(path, _svg(report).encode())
@@ -101,17 +101,16 @@ def write_plot(path: Path, report: MotionReport) -> None:
 
 
 class _Panel(NamedTuple):
-    """A diagram of one figure. lines : (n, 2) pixels each, the input before the output; ends : t0, t1, low, high"""
+    """A diagram of one figure. lines : (n, 2) pixels each, the input before the output; ends : t0, t1, low, high
+
+    is_dotted : whether the curve is drawn as single points: those of contacts, between which nothing is measured
+    """
 
     title: str
     top: float
     lines: list[Array]
     ends: tuple[float, float, float, float]
-
-    @property
-    def dots(self) -> bool:
-        """Whether the curve is drawn as single points."""
-        return "contact" in self.title
+    is_dotted: bool
 
     @property
     def colours(self) -> tuple[str, ...]:
@@ -133,24 +132,24 @@ def _panels(report: MotionReport) -> Iterator[_Panel]:
         x = LEFT + (t - first) / (last - first) * (WIDTH - LEFT - 20)
         y = top + PANEL * (1.0 - (v - low) / (high - low))
         lines = [np.column_stack((x, column)) for column in y.T]
-        yield _Panel(title, top, lines, (first, last, low, high))
+        yield _Panel(title, top, lines, (first, last, low, high), is_dotted="contact" in title)
 
 
 def _svg(report: MotionReport) -> str:
-    parts = [tag("rect", width="100%", height="100%", fill="white")]
+    parts = [markup.tag("rect", width="100%", height="100%", fill="white")]
     for panel in _panels(report):
         size = {"width": WIDTH - LEFT - 20, "height": PANEL}
-        parts.append(tag("rect", x=LEFT, y=f"{panel.top}", **size, fill="none", stroke=GRID))
-        parts += [tag("text", text, x=f"{x}", y=f"{y}", font_size=12, fill=INK) for x, y, text in _labels(panel)]
+        parts.append(markup.tag("rect", x=LEFT, y=f"{panel.top}", **size, fill="none", stroke=GRID))
+        parts += [markup.tag("text", text, x=f"{x}", y=f"{y}", font_size=12, fill=INK) for x, y, text in _labels(panel)]
         for points, colour in zip(panel.lines, panel.colours, strict=True):
-            if panel.dots:
-                parts += [tag("circle", cx=f"{x:.1f}", cy=f"{y:.1f}", r=1.6, fill=colour) for x, y in points]
+            if panel.is_dotted:
+                parts += [markup.tag("circle", cx=f"{x:.1f}", cy=f"{y:.1f}", r=1.6, fill=colour) for x, y in points]
             else:
                 line = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
-                parts.append(tag("polyline", points=line, fill="none", stroke=colour, stroke_width=0.8))
+                parts.append(markup.tag("polyline", points=line, fill="none", stroke=colour, stroke_width=0.8))
     size = {"width": WIDTH, "height": TOP + len(report.curves) * (PANEL + GAP)}
     inside = "\n".join(["", *parts, ""])
-    return tag("svg", inside, xmlns="http://www.w3.org/2000/svg", **size, font_family="sans-serif") + "\n"
+    return markup.tag("svg", inside, xmlns="http://www.w3.org/2000/svg", **size, font_family="sans-serif") + "\n"
 
 
 def _png(report: MotionReport) -> bytes:
@@ -164,7 +163,7 @@ def _png(report: MotionReport) -> bytes:
         for x, y, text in _labels(panel):
             draw.text((x, y - 11), text, fill=INK)
         for points, colour in zip(panel.lines, panel.colours, strict=True):
-            if panel.dots:
+            if panel.is_dotted:
                 for x, y in points:
                     draw.ellipse((x - 1.6, y - 1.6, x + 1.6, y + 1.6), fill=colour)
             else:

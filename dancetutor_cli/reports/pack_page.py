@@ -12,7 +12,6 @@ from dancetutor_cli.reports.pack import TECHNIQUES, Pack, PackChart
 from dancetutor_cli.run import markup
 from dancetutor_cli.run.errors import plural
 from dancetutor_cli.run.foreign_text import safe, safe_path
-from dancetutor_cli.run.markup import tag
 
 # Pictures of a pack as inline SVG: bars of meters, dots over meters, shares of facing. Tooltips name the chart.
 
@@ -40,25 +39,25 @@ def _svg(title: str, y_name: str, *parts: str) -> str:
     middle = f"{HEIGHT / 2:.0f}"
     axes = (
         _label(f"{(WIDTH + _LEFT) / 2:.0f}", HEIGHT - 4, "meter"),
-        tag("text", y_name, x=12, y=middle, transform=f"rotate(-90 12 {middle})", text_anchor="middle"),
+        markup.tag("text", y_name, x=12, y=middle, transform=f"rotate(-90 12 {middle})", text_anchor="middle"),
         _path("axis", f"M{_LEFT} {_TOP}V{HEIGHT - _BOTTOM}H{WIDTH - _RIGHT}"),
     )
-    return tag("svg", "".join((*axes, *parts)), viewBox=f"0 0 {WIDTH} {HEIGHT}", role="img", aria_label=title)
+    return markup.tag("svg", "".join((*axes, *parts)), viewBox=f"0 0 {WIDTH} {HEIGHT}", role="img", aria_label=title)
 
 
 def _path(class_: str, d: str) -> str:
-    return tag("path", class_=class_, d=d)
+    return markup.tag("path", class_=class_, d=d)
 
 
 def _label(x: str, y: int, text: str) -> str:
-    return tag("text", text, x=x, y=y, text_anchor="middle")
+    return markup.tag("text", text, x=x, y=y, text_anchor="middle")
 
 
 def _bar(x: float, top: float, bottom: float, width: float, about: tuple[str, str]) -> str:
     """Return a part of a bar. about : its colour and its tooltip"""
     colour, words = about
     size = {"y": f"{top:.1f}", "width": f"{width:.1f}", "height": f"{bottom - top:.1f}"}
-    return tag("rect", tag("title", words), x=f"{x:.1f}", **size, fill=colour)
+    return markup.tag("rect", markup.tag("title", words), x=f"{x:.1f}", **size, fill=colour)
 
 
 def _x(value: float, first: float, last: float) -> float:
@@ -76,7 +75,7 @@ def _grid(most: float) -> list[str]:
     for n in range(1, int(most / step) + 1):
         y = _y(n * step, most)
         out.append(_path("grid", f"M{_LEFT} {y:.1f}H{WIDTH - _RIGHT}"))
-        out.append(tag("text", f"{n * step:g}", x=_LEFT - 4, y=f"{y + 4:.1f}", text_anchor="end"))
+        out.append(markup.tag("text", f"{n * step:g}", x=_LEFT - 4, y=f"{y + 4:.1f}", text_anchor="end"))
     return out
 
 
@@ -107,7 +106,7 @@ def bars(counts: Mapping[int, Mapping[str, int]], plays: Mapping[int, int]) -> s
                 below += count
         out.append(_label(f"{x + wide / 2:.1f}", HEIGHT - 18, str(meter)))
     line = " ".join(f"{_LEFT + (n + 0.5) * wide:.1f},{_y(plays.get(m, 0), most):.1f}" for n, m in enumerate(meters))
-    out.append(tag("polyline", class_="plays", points=line))
+    out.append(markup.tag("polyline", class_="plays", points=line))
     return _svg("charts by meter", "charts", *out)
 
 
@@ -126,9 +125,8 @@ def dots(found: Sequence[Dot], title: str, y_name: str, *, diagonal: bool = Fals
         aside = placed[one.x] = placed.get(one.x, -1) + 1
         x = _x(one.x + ((aside * 0.618) % 1 - 0.5) * 0.6, 0, last)
         colour = COLOURS.get(one.difficulty, COLOURS["Edit"])
-        out.append(
-            tag("circle", tag("title", escape(one.name)), cx=f"{x:.1f}", cy=f"{_y(one.y, most):.1f}", r=3, fill=colour)
-        )
+        tooltip = markup.tag("title", escape(one.name))
+        out.append(markup.tag("circle", tooltip, cx=f"{x:.1f}", cy=f"{_y(one.y, most):.1f}", r=3, fill=colour))
     return _svg(title, y_name, *out)
 
 
@@ -172,7 +170,7 @@ _MINUTE = 60.0
 _OFF = 2.0  # meters between label and estimate from which a cell is marked
 
 
-def html_page(pack: Pack, changes: Sequence[str] = ()) -> str:
+def pack_html(pack: Pack, changes: Sequence[str] = ()) -> str:
     """Return the page. changes : lines about the changes since another version of the pack"""
     charts = pack.charts()
     name = safe_path(pack.folder.rsplit("/", 1)[-1])

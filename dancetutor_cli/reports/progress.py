@@ -85,8 +85,7 @@ class FilmProgress:
             line = f"{self.name}: {self.done / self.fps:.0f} of {self.frames / self.fps:.0f} s done"
             if speed is not None:
                 line += f", {speed:.2f}x, {(self.frames - self.done) / self.fps / speed:.0f} s left"
-            sys.stderr.write(f"{line}\n")
-            sys.stderr.flush()
+            self.say(line)
 
     def _speed(self, now: float) -> float | None:
         """Return the seconds of film per second; None until enough is drawn."""

@@ -21,7 +21,6 @@ from dancetutor_cli.reports.sheet_places import SheetStyle, lay_out, sheet_style
 from dancetutor_cli.run import markup
 from dancetutor_cli.run.foreign_text import safe
 from dancetutor_cli.run.languages import ENGLISH
-from dancetutor_cli.run.markup import tag, text, title
 
 _LEFT = 12.0
 _FACTS, _FACT = 66.0, 14.0  # y of the first line of facts, and the spacing of these lines
@@ -52,12 +51,12 @@ def svg_sheet(sheet: Sheet, facts: Sequence[str]) -> str:
     y = _heading_height(sheet, facts)
     parts = [_heading(sheet, facts)]
     for which in range(layout.systems):
-        parts.append(tag("g", system(sheet, which), transform=f"translate(0 {y:g})"))
+        parts.append(markup.tag("g", system(sheet, which), transform=f"translate(0 {y:g})"))
         y += layout.system_height(which) + _GAP
     return _svg(style, "\n".join(parts), y, outer=True)
 
 
-def html_page(sheets: Sequence[tuple[Sheet, Sequence[str]]]) -> str:
+def sheets_html(sheets: Sequence[tuple[Sheet, Sequence[str]]]) -> str:
     """Return all sheets as one self-contained page: each system is a picture that is not cut when printing."""
     style = sheets[0][0].style
     song = sheets[0][0].subject.song
@@ -83,11 +82,11 @@ def _heading(sheet: Sheet, facts: Sequence[str]) -> str:
     """Return the title, the facts, the legend and the density strip."""
     song, chart = sheet.subject.song, sheet.subject.chart
     by = " · ".join(part for part in (song.artist, chart.label, chart.description) if part.strip())
-    parts = [text(song.title or song.path.name, _LEFT, 30, "title"), text(by, _LEFT, 50, "subtitle")]
-    parts += [text(line, _LEFT, _FACTS + _FACT * n, "fact") for n, line in enumerate(facts)]
+    parts = [markup.text(song.title or song.path.name, _LEFT, 30, "title"), markup.text(by, _LEFT, 50, "subtitle")]
+    parts += [markup.text(line, _LEFT, _FACTS + _FACT * n, "fact") for n, line in enumerate(facts)]
     y = _FACTS + _FACT * len(facts)
-    parts.append(tag("g", _legend(sheet), transform=f"translate({_LEFT:g} {y - 4:g})"))
-    parts.append(tag("g", _density(sheet), transform=f"translate(0 {y + 24:g})"))
+    parts.append(markup.tag("g", _legend(sheet), transform=f"translate({_LEFT:g} {y - 4:g})"))
+    parts.append(markup.tag("g", _density(sheet), transform=f"translate(0 {y + 24:g})"))
     return "".join(parts)
 
 
@@ -102,14 +101,15 @@ def _density(sheet: Sheet) -> str:
     parts = []
     for measure, count in enumerate(counts.tolist()):
         height = count / tallest * (style.density - 10)
-        bar = title(sheet.say("measure", measure=measure, rows=count))
-        parts.append(tag("rect", bar, x=_LEFT + measure * step, y=style.density - height, width=max(step - 0.6, 0.5),
-                         height=height, fill=style.colours["density"]))  # fmt: skip
+        bar = markup.title(sheet.say("measure", measure=measure, rows=count))
+        size = {"width": max(step - 0.6, 0.5), "height": height}
+        place = {"x": _LEFT + measure * step, "y": style.density - height}
+        parts.append(markup.tag("rect", bar, **place, **size, fill=style.colours["density"]))
     for finding in sheet.findings:
         if finding.beat is not None:
             x = _LEFT + finding.beat / 4 * step
-            parts.append(tag("rect", x=x, y=0, width=1.4, height=6, fill=style.colours[finding.severity]))
-    parts.append(tag("path", d=f"M{_LEFT:g},{style.density:g} H{width - _LEFT:g}", class_="axis"))
+            parts.append(markup.tag("rect", x=x, y=0, width=1.4, height=6, fill=style.colours[finding.severity]))
+    parts.append(markup.tag("path", d=f"M{_LEFT:g},{style.density:g} H{width - _LEFT:g}", class_="axis"))
     return "".join(parts)
 
 
@@ -121,26 +121,26 @@ def _legend(sheet: Sheet) -> str:
     for grid, colour in sorted(style.quantisation.items()):
         if colour in used:
             shape = f"translate({x + 8:g} 8) scale(15)"
-            parts.append(tag("use", href="#arrow", transform=shape, fill=colour, class_="sample"))
+            parts.append(markup.tag("use", href="#arrow", transform=shape, fill=colour, class_="sample"))
             label = "grid-nd" if grid % 10 == 2 and grid != 12 else "grid-th"  # 32nd, 16th
-            parts.append(text(sheet.say(label, grid=grid), x + 19, 11.5, "fact"))
+            parts.append(markup.text(sheet.say(label, grid=grid), x + 19, 11.5, "fact"))
             x += 54
     limbs = {limb for limb, _ in sheet.limbs.values()}
     for limb, label in zip((0, 1, 2, 3, -1), _LIMBS, strict=True):
         if limb in limbs or limb in (0, 1):
             name = sheet.words.limbs[label]
-            parts.append(mark(style, x + 16, 8, limb, 0) + text(name, x + 27, 11.5, "fact"))
+            parts.append(mark(style, x + 16, 8, limb, 0) + markup.text(name, x + 27, 11.5, "fact"))
             x += 40 + 5.4 * _letters(name)
     if unsure_rows(sheet):
         name = sheet.say("unsure-below", percent=f"{style.unsure:g}")
-        parts.append(badge(style, x + 16, 8, 62) + text(name, x + 27, 11.5, "fact"))
+        parts.append(badge(style, x + 16, 8, 62) + markup.text(name, x + 27, 11.5, "fact"))
         x += 40 + 5.0 * _letters(name)
     for name, kind, corner in (("hold", Kind.HOLD, 3), ("roll", Kind.ROLL, 3), ("mine", Kind.MINE, 6)):
         if (chart.notes.kind == kind).any():
             opacity = 1.0 if kind == Kind.MINE else HOLD_OPACITY
-            parts.append(tag("rect", x=x + 8, y=2, width=12, height=12, rx=corner, fill=style.colours[name],
+            parts.append(markup.tag("rect", x=x + 8, y=2, width=12, height=12, rx=corner, fill=style.colours[name],
                              fill_opacity=opacity, class_="key"))  # fmt: skip
-            parts.append(text(sheet.say(name), x + 25, 11.5, "fact"))
+            parts.append(markup.text(sheet.say(name), x + 25, 11.5, "fact"))
             x += 36 + 5.4 * _letters(sheet.say(name))
     return "".join(parts)
 
@@ -185,10 +185,10 @@ def _svg(style: SheetStyle, inside: str, height: float, *, outer: bool = False) 
         f".sole{{stroke:{colours['ink']};stroke-width:.4}}.flag{{stroke-width:1;fill:none;stroke-opacity:.75}}"
         f".axis{{stroke:{colours['measure_line']};stroke-width:.8}}"
     )
-    paper = tag("rect", width=width, height=height, fill=colours["paper"]) if outer else ""
+    paper = markup.tag("rect", width=width, height=height, fill=colours["paper"]) if outer else ""
     body = f"<style>{css}</style>{definitions(style)}{paper}\n{inside}\n"
     box = f"0 0 {width:g} {height:g}"
-    return tag("svg", body, xmlns="http://www.w3.org/2000/svg", viewBox=box, width=width, height=height)
+    return markup.tag("svg", body, xmlns="http://www.w3.org/2000/svg", viewBox=box, width=width, height=height)
 
 
 def _page_css(style: SheetStyle) -> str:

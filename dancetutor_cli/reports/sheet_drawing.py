@@ -11,14 +11,14 @@ import numpy as np
 
 from dancetutor_cli.chart.model import STEP_KINDS, Kind
 from dancetutor_cli.chart.names import TICKS_PER_BEAT, TICKS_PER_MEASURE
-from dancetutor_cli.feet.limbs import Part
+from dancetutor_cli.feet.limbs import letter
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.subject import ChartSubject
 from dancetutor_cli.reports.analyze_formats import clock
-from dancetutor_cli.reports.sheet_places import LETTERS, SheetLayout, SheetStyle
+from dancetutor_cli.reports.sheet_places import SheetLayout, SheetStyle
+from dancetutor_cli.run import markup
 from dancetutor_cli.run.foreign_text import safe
 from dancetutor_cli.run.languages import ENGLISH, Language, load_language
-from dancetutor_cli.run.markup import number, tag, text, title
 
 _PLURAL = re.compile(r"\{(\w+)\|([^|}]*)\|([^}]*)\}")
 HOLD_OPACITY = 0.55
@@ -64,7 +64,7 @@ def definitions(style: SheetStyle) -> str:
     """Return the definitions of repeated shapes: the arrow (pointing up), one unit high, and the middle panel."""
     arrow = "M0,-.5 L.48,-.02 L.34,.14 L.13,-.06 L.13,.5 L-.13,.5 L-.13,-.06 L-.34,.14 L-.48,-.02 Z"
     shapes = f'<path id="arrow" d="{arrow}"/><rect id="middle" x="-.4" y="-.4" width=".8" height=".8" rx=".15"/>'
-    return tag("defs", shapes)
+    return markup.tag("defs", shapes)
 
 
 def system(sheet: Sheet, which: int) -> str:
@@ -89,7 +89,7 @@ def _measure(sheet: Sheet, measure: int) -> str:
     left, top = layout.left(measure), layout.top(measure)
     width, height = layout.lanes * style.lane, layout.measure_height
     shade = style.colours["shade"] if measure % 2 else style.colours["paper"]
-    parts = [tag("rect", x=left, y=top, width=width, height=height, fill=shade)]
+    parts = [markup.tag("rect", x=left, y=top, width=width, height=height, fill=shade)]
     for beat in range(1, 4):
         y = top + beat * layout.beat
         parts.append(_line(left, y, left + width, y, style.colours["line"], 0.5))
@@ -99,13 +99,13 @@ def _measure(sheet: Sheet, measure: int) -> str:
     ends = (top, top + height) if measure == layout.column_of(measure)[-1] else (top,)
     parts += [_line(left, y, left + width, y, style.colours["measure_line"], 1.2) for y in ends]
     second = float(sheet.subject.chart.timing.seconds(np.array([measure * TICKS_PER_MEASURE]))[0])
-    parts.append(text(str(measure), left - 5, top + 4, "number", text_anchor="end"))
-    parts.append(text(clock(second, milliseconds=False), left - 5, top + 13, "time", text_anchor="end"))
+    parts.append(markup.text(str(measure), left - 5, top + 4, "number", text_anchor="end"))
+    parts.append(markup.text(clock(second, milliseconds=False), left - 5, top + 13, "time", text_anchor="end"))
     return "".join(parts)
 
 
 def _line(x1: float, y1: float, x2: float, y2: float, colour: str, width: float) -> str:
-    return tag("line", x1=x1, y1=y1, x2=x2, y2=y2, stroke=colour, stroke_width=width)
+    return markup.tag("line", x1=x1, y1=y1, x2=x2, y2=y2, stroke=colour, stroke_width=width)
 
 
 def _holds(sheet: Sheet, ticks: range) -> Iterator[str]:
@@ -120,7 +120,7 @@ def _holds(sheet: Sheet, ticks: range) -> Iterator[str]:
             last = min(layout.column_of(first // TICKS_PER_MEASURE).stop * TICKS_PER_MEASURE, end, ticks.stop)
             x, y = layout.x(first, lane) - style.arrow * 0.27, layout.y(first)
             height = (last - first) / TICKS_PER_BEAT * layout.beat
-            yield tag(
+            yield markup.tag(
                 "rect", x=x, y=y, width=style.arrow * 0.54, height=height, rx=3, fill=colour, fill_opacity=HOLD_OPACITY
             )
             first = last
@@ -146,20 +146,28 @@ def _notes(sheet: Sheet, ticks: range) -> Iterator[str]:
 
 def _arrow(sheet: Sheet, lane: int, at: tuple[float, float], colour: str, opacity: float) -> str:
     angle = sheet.arrows[lane]
-    move = f"translate({number(at[0])} {number(at[1])}) scale({number(sheet.style.arrow)})"
-    turn = f" rotate({number(angle)})" if angle else ""
-    return tag(
-        "use", href="#middle" if angle is None else "#arrow", transform=move + turn, fill=colour,
-        fill_opacity=opacity, stroke=sheet.style.colours["ink"], stroke_width="0.045",
-    )  # fmt: skip
+    move = f"translate({markup.number(at[0])} {markup.number(at[1])}) scale({markup.number(sheet.style.arrow)})"
+    turn = f" rotate({markup.number(angle)})" if angle else ""
+    return markup.tag(
+        "use",
+        href="#middle" if angle is None else "#arrow",
+        transform=move + turn,
+        fill=colour,
+        fill_opacity=opacity,
+        stroke=sheet.style.colours["ink"],
+        stroke_width="0.045",
+    )
 
 
 def _mine(style: SheetStyle, x: float, y: float) -> str:
     r = style.arrow * 0.36
-    cross = (
-        f"M{number(x - r / 2)},{number(y - r / 2)} l{number(r)},{number(r)} m0,{number(-r)} l{number(-r)},{number(r)}"
-    )
-    return tag("circle", cx=x, cy=y, r=r, fill=style.colours["mine"]) + tag("path", d=cross, class_="cross")
+    cross = f"M{_point(x - r / 2, y - r / 2)} l{_point(r, r)} m{_point(0, -r)} l{_point(-r, r)}"
+    disc = markup.tag("circle", cx=x, cy=y, r=r, fill=style.colours["mine"])
+    return disc + markup.tag("path", d=cross, class_="cross")
+
+
+def _point(x: float, y: float) -> str:
+    return f"{markup.number(x)},{markup.number(y)}"
 
 
 def mark(style: SheetStyle, x: float, y: float, limb: int, part: int) -> str:
@@ -168,19 +176,26 @@ def mark(style: SheetStyle, x: float, y: float, limb: int, part: int) -> str:
     The shapes can be distinguished without colours.
     """
     half, colour = style.mark / 2, style.limbs[limb] if limb >= 0 else style.colours["mine"]
-    letter = LETTERS[limb] if limb >= 0 else "?"
-    letter = letter.lower() if part == Part.TOE else letter
+    sign = letter(limb, part) if limb >= 0 else "?"
     ink = style.colours["ink"]
     if limb == 0:
-        shape = tag("circle", cx=x, cy=y, r=half, fill=colour, stroke=ink, stroke_width=0.6)
+        shape = markup.tag("circle", cx=x, cy=y, r=half, fill=colour, stroke=ink, stroke_width=0.6)
     elif limb == 1:
-        shape = tag("rect", x=x - half + 0.4, y=y - half + 0.4, width=style.mark - 0.8, height=style.mark - 0.8,
-                    fill=colour, stroke=ink, stroke_width=0.6)  # fmt: skip
+        shape = markup.tag(
+            "rect",
+            x=x - half + 0.4,
+            y=y - half + 0.4,
+            width=style.mark - 0.8,
+            height=style.mark - 0.8,
+            fill=colour,
+            stroke=ink,
+            stroke_width=0.6,
+        )
     else:
-        points = f"{number(x)},{number(y - half - 1)} {number(x + half + 1)},{number(y)} "
-        points += f"{number(x)},{number(y + half + 1)} {number(x - half - 1)},{number(y)}"
-        shape = tag("polygon", points=points, fill=colour, stroke=ink, stroke_width=0.6)
-    return shape + text(letter, x, y + 3.1, "mark", text_anchor="middle")
+        points = f"{_point(x, y - half - 1)} {_point(x + half + 1, y)} "
+        points += f"{_point(x, y + half + 1)} {_point(x - half - 1, y)}"
+        shape = markup.tag("polygon", points=points, fill=colour, stroke=ink, stroke_width=0.6)
+    return shape + markup.text(sign, x, y + 3.1, "mark", text_anchor="middle")
 
 
 def unsure_rows(sheet: Sheet) -> list[tuple[int, int, float]]:
@@ -198,9 +213,18 @@ def _unsure_bands(sheet: Sheet, ticks: range) -> Iterator[str]:
     for _, tick, percent in unsure_rows(sheet):
         if tick in ticks:
             left, width = sheet.layout.left(tick // TICKS_PER_MEASURE), sheet.layout.lanes * sheet.style.lane
-            tooltip = title(sheet.say("unsure", percent=f"{percent:.0f}"))
-            yield tag("rect", tooltip, x=left, y=sheet.layout.y(tick) - 7, width=width, height=14, rx=4,
-                      fill=sheet.style.colours["unsure"], fill_opacity=_BAND_OPACITY)  # fmt: skip
+            tooltip = markup.title(sheet.say("unsure", percent=f"{percent:.0f}"))
+            yield markup.tag(
+                "rect",
+                tooltip,
+                x=left,
+                y=sheet.layout.y(tick) - 7,
+                width=width,
+                height=14,
+                rx=4,
+                fill=sheet.style.colours["unsure"],
+                fill_opacity=_BAND_OPACITY,
+            )
 
 
 def _unsure_marks(sheet: Sheet, ticks: range) -> Iterator[str]:
@@ -215,9 +239,18 @@ def _unsure_marks(sheet: Sheet, ticks: range) -> Iterator[str]:
 
 def badge(style: SheetStyle, x: float, y: float, percent: float) -> str:
     """Return a confidence in per cent, white on a plate; x, y : its middle."""
-    plate = tag("rect", x=x - 7, y=y - 5, width=14, height=10, rx=3, fill=style.colours["unsure"],
-                stroke=style.colours["paper"], stroke_width=0.8)  # fmt: skip
-    return plate + text(f"{percent:.0f}", x, y + 3, "sure", text_anchor="middle")
+    plate = markup.tag(
+        "rect",
+        x=x - 7,
+        y=y - 5,
+        width=14,
+        height=10,
+        rx=3,
+        fill=style.colours["unsure"],
+        stroke=style.colours["paper"],
+        stroke_width=0.8,
+    )
+    return plate + markup.text(f"{percent:.0f}", x, y + 3, "sure", text_anchor="middle")
 
 
 def _feet(sheet: Sheet, ticks: range) -> Iterator[str]:
@@ -250,14 +283,14 @@ def _pose(sheet: Sheet, x: float, y: float, feet: Sequence[int], facing: float) 
     parts = []
     for panel in near:
         px, py = x + (panel[0] - middle[0]) * scale, y - (panel[1] - middle[1]) * scale
-        parts.append(tag("rect", x=px - 3.4, y=py - 3.4, width=6.8, height=6.8, rx=1, class_="panel"))
+        parts.append(markup.tag("rect", x=px - 3.4, y=py - 3.4, width=6.8, height=6.8, rx=1, class_="panel"))
     for limb, column in enumerate(feet):
         px, py = x + (pad.panels[column][0] - middle[0]) * scale, y - (pad.panels[column][1] - middle[1]) * scale
-        turn = f"rotate({number(-facing)} {number(px)} {number(py)})"
+        turn = f"rotate({markup.number(-facing)} {markup.number(px)} {markup.number(py)})"
         parts.append(
-            tag("ellipse", cx=px, cy=py, rx=2.4, ry=4.6, fill=style.limbs[limb], class_="sole", transform=turn)
+            markup.tag("ellipse", cx=px, cy=py, rx=2.4, ry=4.6, fill=style.limbs[limb], class_="sole", transform=turn)
         )
-    return tag("g", title(sheet.say("crossed", degrees=f"{facing:g}")) + "".join(parts))
+    return markup.tag("g", markup.title(sheet.say("crossed", degrees=f"{facing:g}")) + "".join(parts))
 
 
 def _finding_flags(sheet: Sheet, ticks: range) -> Iterator[str]:
@@ -275,8 +308,17 @@ def _finding_flags(sheet: Sheet, ticks: range) -> Iterator[str]:
             colour = sheet.style.colours[finding.severity]
             label = y if bottom[0] != column else max(y, bottom[1] + 9)
             bottom = (column, label)
-            line = tag("path", d=f"M{number(left - 3)},{number(y)} H{number(right + 2)}", stroke=colour, class_="flag")
-            lead = tag("path", d=f"M{number(right + 31)},{number(y)} L{number(right + 33)},{number(label)}",
-                       stroke=colour, class_="flag")  # fmt: skip
-            code = text(finding.rule, right + 34, label + 2.5, "code", style=f"fill:{colour}")
-            yield tag("g", title(f"{finding.rule} {sheet.message(finding)}") + line + lead + code)
+            line = markup.tag(
+                "path",
+                d=f"M{_point(left - 3, y)} H{markup.number(right + 2)}",
+                stroke=colour,
+                class_="flag",
+            )
+            lead = markup.tag(
+                "path",
+                d=f"M{_point(right + 31, y)} L{_point(right + 33, label)}",
+                stroke=colour,
+                class_="flag",
+            )
+            code = markup.text(finding.rule, right + 34, label + 2.5, "code", style=f"fill:{colour}")
+            yield markup.tag("g", markup.title(f"{finding.rule} {sheet.message(finding)}") + line + lead + code)

@@ -19,7 +19,6 @@ from dancetutor_cli.run.reading import config_path
 from dancetutor_cli.run.schema import NOT_IN_FILES, Bounds, HexColour, Positive, convert
 from dancetutor_cli.run.yaml_files import load, read
 
-LETTERS = ("L", "R", "<", ">")  # by limb
 _Grid = Annotated[int, Bounds(1)]
 
 

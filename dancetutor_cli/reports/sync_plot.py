@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from dancetutor_cli.lint.findings import ITG, NULL
 from dancetutor_cli.lint.sync import Judgement
 from dancetutor_cli.reports.analyze_formats import clock
-from dancetutor_cli.run.markup import number, tag, text
-from dancetutor_cli.run.pictures import texture_bytes
+from dancetutor_cli.run import markup
+from dancetutor_cli.run.pictures import picture_bytes
 
 _WIDTH, _HEIGHT = 900, 420
 _LEFT, _RIGHT, _TOP, _BOTTOM = 64, 16, 56, 48
@@ -19,6 +19,7 @@ _REACH = 40.0  # ms above and below the bias
 _STEP = 10  # ms between lines
 _DARK, _LIGHT = np.array([24, 48, 104]), np.array([255, 255, 255])  # colours of the highest and the lowest values
 _INK, _GREY, _LINE, _BIAS = "#1d2430", "#6b7484", "#c9ced8", "#d9480f"
+_STYLE = f".name{{font-size:16px;font-weight:600}}.note{{fill:{_GREY}}}text{{font-size:12px;fill:{_INK}}}"
 
 
 def sync_plot(name: str, found: Judgement) -> str:
@@ -29,25 +30,26 @@ def sync_plot(name: str, found: Judgement) -> str:
     bias = found.sync.bias_ms or 0.0
     low, high = bias - _REACH, bias + _REACH
     parts = [
-        tag("style", f".name{{font-size:16px;font-weight:600}}.note{{fill:{_GREY}}}text{{font-size:12px;fill:{_INK}}}"),
-        tag("rect", width=_WIDTH, height=_HEIGHT, fill="#fff"),
-        text(name, _LEFT, 24, "name"),
-        text(found.sync.description, _LEFT, 43, "note"),
+        markup.tag("style", _STYLE),
+        markup.tag("rect", width=_WIDTH, height=_HEIGHT, fill="#fff"),
+        markup.text(name, _LEFT, 24, "name"),
+        markup.text(found.sync.description, _LEFT, 43, "note"),
         _heat(found, low, high),
         *_grid(found, low, high),
         *_dots(found, low, high),
-        tag("line", x1=_LEFT, x2=_WIDTH - _RIGHT, y1=_y(bias, low, high), y2=_y(bias, low, high), stroke=_BIAS),
+        markup.tag("line", x1=_LEFT, x2=_WIDTH - _RIGHT, y1=_y(bias, low, high), y2=_y(bias, low, high), stroke=_BIAS),
     ]
-    size = f'viewBox="0 0 {_WIDTH} {_HEIGHT}" width="{_WIDTH}" height="{_HEIGHT}" font-family="sans-serif"'
-    return f'<svg xmlns="http://www.w3.org/2000/svg" {size}>\n' + "\n".join(parts) + "\n</svg>\n"
+    size = {"viewBox": f"0 0 {_WIDTH} {_HEIGHT}", "width": _WIDTH, "height": _HEIGHT}
+    inside = "\n".join(["", *parts, ""])
+    return markup.tag("svg", inside, xmlns="http://www.w3.org/2000/svg", **size, font_family="sans-serif") + "\n"
 
 
-def _y(milliseconds: float, low: float, high: float) -> str:
-    return number(_TOP + (_HEIGHT - _TOP - _BOTTOM) * (high - milliseconds) / (high - low))
+def _y(milliseconds: float, low: float, high: float) -> float:
+    return _TOP + (_HEIGHT - _TOP - _BOTTOM) * (high - milliseconds) / (high - low)
 
 
-def _x(share: float) -> str:
-    return number(_LEFT + (_WIDTH - _LEFT - _RIGHT) * share)
+def _x(share: float) -> float:
+    return _LEFT + (_WIDTH - _LEFT - _RIGHT) * share
 
 
 def _heat(found: Judgement, low: float, high: float) -> str:
@@ -56,9 +58,10 @@ def _heat(found: Judgement, low: float, high: float) -> str:
     rows = np.array([np.interp(wanted, found.lags, part, left=0.0, right=0.0) for part in found.profile])
     strength: NDArray[np.float64] = np.clip(rows / np.maximum(rows.max(axis=1, keepdims=True), 1e-9), 0, 1)
     pixels = (_LIGHT + (_DARK - _LIGHT) * (strength.T**2)[..., None]).astype(np.uint8)
-    data = base64.b64encode(texture_bytes(pixels)).decode("ascii")
-    place = f'x="{_LEFT}" y="{_TOP}" width="{_WIDTH - _LEFT - _RIGHT}" height="{_HEIGHT - _TOP - _BOTTOM}"'
-    return f'<image {place} preserveAspectRatio="none" opacity="0.75" href="data:image/png;base64,{data}"/>'
+    data = base64.b64encode(picture_bytes(pixels)).decode("ascii")
+    size = {"width": _WIDTH - _LEFT - _RIGHT, "height": _HEIGHT - _TOP - _BOTTOM}
+    look = {"preserveAspectRatio": "none", "opacity": "0.75", "href": f"data:image/png;base64,{data}"}
+    return markup.tag("image", x=_LEFT, y=_TOP, **size, **look)
 
 
 def _grid(found: Judgement, low: float, high: float) -> list[str]:
@@ -69,24 +72,23 @@ def _grid(found: Judgement, low: float, high: float) -> list[str]:
     for milliseconds, name in lines.items():
         y = _y(milliseconds, low, high)
         named = not name.endswith("ms")
-        out.append(
-            tag("line", x1=_LEFT, x2=_WIDTH - _RIGHT, y1=y, y2=y, stroke=_INK if named else _LINE, stroke_width=1)
-        )
+        colour = _INK if named else _LINE
+        out.append(markup.tag("line", x1=_LEFT, x2=_WIDTH - _RIGHT, y1=y, y2=y, stroke=colour, stroke_width=1))
         if named or all(abs(milliseconds - one) > 4 for one in (NULL, ITG)):
-            out.append(text(name, _LEFT - 6, float(y) + 4, "axis", text_anchor="end"))
+            out.append(markup.text(name, _LEFT - 6, y + 4, None, text_anchor="end"))
     for share in np.linspace(0, 1, 5):
         second = found.first + share * (found.last - found.first)
         label = clock(second, milliseconds=False)
-        out.append(text(label, float(_x(float(share))), _HEIGHT - 26, "axis", text_anchor="middle"))
+        out.append(markup.text(label, _x(float(share)), _HEIGHT - 26, None, text_anchor="middle"))
     note = "dark: attacks of the music around the notes of a part; dots: best value of each part; line: of the song"
-    out.append(text(note, _LEFT, _HEIGHT - 8, "note"))
+    out.append(markup.text(note, _LEFT, _HEIGHT - 8, "note"))
     return out
 
 
 def _dots(found: Judgement, low: float, high: float) -> list[str]:
     count = len(found.biases)
     return [
-        tag("circle", cx=_x((place + 0.5) / count), cy=_y(float(seconds) * 1000, low, high), r=3.5, fill=_BIAS)
+        markup.tag("circle", cx=_x((place + 0.5) / count), cy=_y(float(seconds) * 1000, low, high), r=3.5, fill=_BIAS)
         for place, seconds in enumerate(found.biases)
         if low < seconds * 1000 < high
     ]

@@ -51,7 +51,7 @@ def tag(name: str, inside: str = "", /, **attributes: object) -> str:
     return f"<{name}{''.join(texts)}>{inside}</{name}>" if inside else f"<{name}{''.join(texts)}/>"
 
 
-def text(content: str, x: float, y: float, class_: str, **attributes: object) -> str:
+def text(content: str, x: float, y: float, class_: str | None, **attributes: object) -> str:
     """Return a line of untrusted text, made safe and escaped."""
     return tag("text", escape(safe(content), quote=False), x=x, y=y, class_=class_, **attributes)
 

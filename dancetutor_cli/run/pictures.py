@@ -1,6 +1,6 @@
-"""Writers of single pictures, and of GIF and WebP animations frame by frame, by `imageio.v3`.
+"""Writers of single pictures, by Pillow, and of GIF and WebP animations frame by frame, by `imageio.v3`.
 
-imageio is imported when a picture is written, so that other commands do not wait for it.
+Both are imported when something is written, so that other commands do not wait for them.
 """
 
 from __future__ import annotations
@@ -21,24 +21,16 @@ Pixels = NDArray[np.uint8]
 UNCHANGED = 255  # the colour of a GIF's palette that shows the frame before
 
 
-def texture_bytes(pixels: Pixels, suffix: Literal[".png", ".webp"] = ".png", **options: Any) -> bytes:
-    """Return a texture (h, w, 3) or (h, w, 4) as bytes for a part of another file. options : Pillow's for the format
+def picture_bytes(pixels: Pixels, suffix: Literal[".png", ".webp"] = ".png", **options: Any) -> bytes:
+    """Return a picture (h, w), (h, w, 3) or (h, w, 4) as the bytes of a file. options : Pillow's for the format
 
-    Only Pillow is used: importing imageio takes 0.2 s, and a dance in a file needs no other picture.
+    imageio would write the same bytes, but its import takes 0.2 s.
     """
     from PIL import Image
 
     out = io.BytesIO()
     Image.fromarray(pixels).save(out, suffix[1:], **options)
     return out.getvalue()
-
-
-def picture_bytes(pixels: Pixels, suffix: Literal[".png", ".webp"] = ".png", **options: Any) -> bytes:
-    """Return a picture (h, w), (h, w, 3) or (h, w, 4) as the bytes of a file. options : Pillow's for the format"""
-    import imageio.v3 as iio
-
-    data: bytes = iio.imwrite("<bytes>", pixels, extension=suffix, plugin="pillow", is_batch=False, **options)
-    return data
 
 
 def read_palette(path: Path) -> Pixels:

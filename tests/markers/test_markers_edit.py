@@ -64,12 +64,13 @@ def test_any_number_of_rows_keeps_its_beats(rows: int) -> None:
 def test_the_demo_song_as_edit_files(name: str) -> None:
     song = parse((SONG / name).read_bytes(), SONG / name)
     feet = feet_of(song)
-    files = list(edit.edit_files(song, feet))
-    assert [path.name for path, _ in files] == [
+    files = list(edit.write(song, SONG, feet))
+    assert [file.path.name for file in files] == [
         f"two_left_feet dancetutor feet {one.chart.difficulty} {one.chart.meter}.edit" for one in feet
     ]
-    for (_, data), one in zip(files, feet, strict=True):
-        assert isinstance(data, bytes)
+    for file, one in zip(files, feet, strict=True):
+        data = file.new
+        assert data is not None and file.error is None
         assert len(data) <= 60 * 1024
         assert data.startswith(b"#SONG:charts/two_left_feet;\n#NOTES:\n     dance-double:\n")
         (chart,) = parse(data, Path("x.sm")).charts
@@ -119,8 +120,9 @@ def test_added_charts_of_real_songs_never_cross_the_feet(corpus: Path) -> None:
 def test_a_chart_that_is_too_long_for_edit_is_reported() -> None:
     measures = b",".join(b"\n" + b"1000\n0000\n" * 95 + b"0001\n0000\n" for _ in range(80))
     song = song_of(sm(measures + b";\n"))
-    ((_, error),) = edit.edit_files(song, feet_of(song))
-    assert isinstance(error, edit.EditError)
+    (file,) = edit.write(song, song.path.parent, feet_of(song))
+    error = file.error
+    assert isinstance(error, edit.EditError) and not file.is_change
     assert "--into-file" in str(error)
     assert "61,440" in str(error)
     assert len(added(song)[1]) == 1
@@ -134,8 +136,9 @@ SPLIT = (
 
 def test_split_timing_goes_along_into_the_file_but_not_into_an_edit() -> None:
     song = song_of(SPLIT, "song.ssc")
-    ((_, error),) = edit.edit_files(song, feet_of(song))
-    assert isinstance(error, edit.EditError)
+    (file,) = edit.write(song, song.path.parent, feet_of(song))
+    error = file.error
+    assert isinstance(error, edit.EditError) and not file.is_change
     assert "its own timing" in str(error)
     _, (chart,), data = added(song)
     assert chart.timing == song.charts[0].timing
@@ -164,7 +167,7 @@ def test_an_added_chart_is_known_without_its_comment() -> None:
 def test_charts_of_one_name_get_names_of_their_own() -> None:
     one = sm(b"\n1000\n;\n")
     song = song_of(one + one[one.index(b"#NOTES") :])
-    names = [path.name for path, _ in edit.edit_files(song, feet_of(song))]
+    names = [file.path.name for file in edit.write(song, song.path.parent, feet_of(song))]
     assert len(set(names)) == 2
 
 

@@ -21,7 +21,7 @@ from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.feet.solver.solve import solve_chart
 from dancetutor_cli.lint.findings import Finding
 from dancetutor_cli.lint.subject import ChartSubject
-from dancetutor_cli.reports.sheet import html_page, make_sheet, svg_sheet
+from dancetutor_cli.reports.sheet import make_sheet, sheets_html, svg_sheet
 from dancetutor_cli.reports.sheet_places import lay_out, sheet_style
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -88,13 +88,13 @@ def test_rows_whose_feet_are_unsure_say_how_sure_they_are() -> None:
 
 
 def test_text_of_the_file_cannot_break_out() -> None:
-    page = html_page([(make_sheet(subject(title="</svg><script>x</script>"), [SPIN]), ["fact"])])
+    page = sheets_html([(make_sheet(subject(title="</svg><script>x</script>"), [SPIN]), ["fact"])])
     assert "<script" not in page and "\x1b" not in page
     assert "a &lt;spin&gt; &amp; more" in page
 
 
 def test_the_page_needs_nothing_from_outside() -> None:
-    page = html_page([(make_sheet(subject(), [SPIN]), ["fact"])])
+    page = sheets_html([(make_sheet(subject(), [SPIN]), ["fact"])])
     assert re.findall(r"""(?:src|href)=["'](?!#)""", page) == []
     assert "url(" not in page and "@import" not in page
     assert set(re.findall(r"https?://[^\"' <]+", page)) <= {"http://www.w3.org/2000/svg"}
@@ -128,7 +128,7 @@ def test_every_system_fits_its_page(lanes: int, spacing: int) -> None:
 
 
 def test_the_heading_is_no_higher_than_the_layout_thinks() -> None:
-    head = html_page([(make_sheet(subject(), [SPIN]), ["fact", "fact"])]).partition("<figure>")[2]
+    head = sheets_html([(make_sheet(subject(), [SPIN]), ["fact", "fact"])]).partition("<figure>")[2]
     height = float(re.search(r'viewBox="0 0 \S+ (\S+)"', head)[1])  # type: ignore[index]
     assert height <= sheet_style().heading + 2 * 18  # 18: what a system keeps above and below
 
@@ -169,7 +169,7 @@ def browser(tmp_path: Path) -> Callable[..., str]:
 
 def test_a_real_browser_draws_it(browser: Callable[..., str], tmp_path: Path) -> None:
     page, picture = tmp_path / "s.html", tmp_path / "s.png"
-    page.write_text(html_page([(make_sheet(subject(), [SPIN]), ["fact"])]), encoding="utf-8")
+    page.write_text(sheets_html([(make_sheet(subject(), [SPIN]), ["fact"])]), encoding="utf-8")
     browser("--window-size=1000,700", f"--screenshot={picture}", page.as_uri())
     pixels = np.asarray(Image.open(picture).convert("RGB"), dtype=int)
     for colour in (*limb_colours().by_limb[:2], (0xEE, 0x3B, 0x4F), (0x3F, 0x74, 0xF5)):
@@ -179,7 +179,7 @@ def test_a_real_browser_draws_it(browser: Callable[..., str], tmp_path: Path) ->
 
 def test_its_policy_forbids_scripts_and_every_place(browser: Callable[..., str], tmp_path: Path) -> None:
     """What somebody smuggles into a sheet neither runs nor loads; without the policy both would."""
-    page, sheet = tmp_path / "s.html", html_page([(make_sheet(subject(), [SPIN]), ["fact"])])
+    page, sheet = tmp_path / "s.html", sheets_html([(make_sheet(subject(), [SPIN]), ["fact"])])
     found = re.search(r'<meta http-equiv="Content-Security-Policy" content="([^"]*)">', sheet)
     assert found
     policy = dict(part.strip().split(" ", 1) for part in found[1].split(";"))
@@ -227,7 +227,7 @@ def test_nothing_is_cut_off_on_screen_or_on_paper(steps_type: str, browser: Call
     sheet = make_sheet(ChartSubject(song, song.charts[0], play, load_pad(steps_type)), findings)
     page, paper = tmp_path / "s.html", tmp_path / "s.pdf"
     page.write_text(
-        html_page([(sheet, ["fact", "fact"])])
+        sheets_html([(sheet, ["fact", "fact"])])
         .replace("</body>", f"{MEASURE}</body>")
         .replace("default-src 'none'", "default-src 'unsafe-inline'"),
         encoding="utf-8",
