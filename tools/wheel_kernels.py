@@ -1,7 +1,7 @@
 """Compile the kernels into a wheel, which then is one for this Python and platform: a build hook of hatchling.
 
 `make wheel` asks for it; other wheels, sdists and editable installs know nothing of it. What is compiled is for a
-portable processor (`run/kernels/store.py`), used only by the numba, llvmlite and Python that compiled it.
+portable processor (`run/kernels/stored_code.py`), used only by the numba, llvmlite and Python that compiled it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-SUFFIX = ".kernel"  # as `dancetutor_cli.run.kernels.store` has it
+SUFFIX = ".kernel"  # as `dancetutor_cli.run.kernels.stored_code` has it
 
 
 class KernelsHook(BuildHookInterface):  # type: ignore[type-arg]
@@ -45,7 +45,7 @@ class KernelsHook(BuildHookInterface):  # type: ignore[type-arg]
 def compiled_copy(root: Path, folder: Path) -> Path:
     """A copy of the checkout `root` in a folder, with its kernels beside the modules."""
     sys.path.insert(0, str(root))  # of this checkout, whatever is installed
-    from dancetutor_cli.run.kernels.store import is_portable
+    from dancetutor_cli.run.kernels.stored_code import is_portable
 
     if not is_portable():
         sys.exit("kernels for others are compiled on a processor with AVX2, and without settings of numba's")
@@ -64,7 +64,7 @@ def tag() -> str:
 
     Machine code of ours calls nothing of the system's C library but what Python and numba have loaded already.
     """
-    from dancetutor_cli.run.kernels.store import COMPILERS
+    from dancetutor_cli.run.kernels.stored_code import COMPILERS
 
     said = [(distribution(name).read_text("WHEEL") or "").splitlines() for name in COMPILERS]
     tags = [[line.removeprefix("Tag: ").strip() for line in lines if line.startswith("Tag: ")] for lines in said]

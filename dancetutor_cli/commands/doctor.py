@@ -130,7 +130,7 @@ def _rubberband() -> Check:
 
 
 def _cache() -> Check:
-    from dancetutor_cli.run.kernels.store import VARIABLE, count_kernels, kernel_folder
+    from dancetutor_cli.run.kernels.stored_code import VARIABLE, count_kernels, kernel_folder
     from dancetutor_cli.run.reading import PACKAGE
 
     folder = kernel_folder()

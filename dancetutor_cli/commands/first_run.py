@@ -36,7 +36,7 @@ def announce_compiling(choice: PresetChoice, size: Callable[[], int] | None = No
     """
     from dancetutor_cli.commands.arguments import note
     from dancetutor_cli.feet.solver.compiled import interpret, is_compiled
-    from dancetutor_cli.run.kernels.store import VARIABLE, kernel_folder
+    from dancetutor_cli.run.kernels.stored_code import VARIABLE, kernel_folder
 
     presets = list(choice.candidates())
     if size is not None and interpret(presets, size):

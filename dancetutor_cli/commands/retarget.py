@@ -18,7 +18,7 @@ from dancetutor_cli.commands.shared_options import (
     report_option,
     write_report,
 )
-from dancetutor_cli.formats.writers import FORMATS, keys
+from dancetutor_cli.formats.writers import FORMATS, describe_keys
 from dancetutor_cli.run.errors import UsageError, choose_text
 from dancetutor_cli.run.files import check_file, one_of, write_atomic
 
@@ -134,4 +134,4 @@ def _written(work: Retargeting, output: Path, with_input: bool) -> str:
         write_atomic(output, capture_page(content))
     else:
         FORMATS[suffix](output, work.character, motion)
-    return keys(motion)
+    return describe_keys(motion)

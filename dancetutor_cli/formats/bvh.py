@@ -143,29 +143,28 @@ def read_bvh(path: Path, scale: float | None = None, ends: bool = False) -> Moti
     return Motion(skeleton, 1.0 / frame_time, times, quat.continuous(turns), root, (), notes=notes)
 
 
-def frame_count(motion: Motion, fps: float) -> int:
-    """Return the number of frames of a motion at `fps`, from its first key on."""
-    return max(1, math.floor(float(motion.times[-1] - motion.times[0]) * fps + 1e-6) + 1)
+def frame_count(motion: Motion) -> int:
+    """Return the number of frames of a motion at its `fps`, from its first key on."""
+    return max(1, math.floor(float(motion.times[-1] - motion.times[0]) * motion.fps + 1e-6) + 1)
 
 
-def write_bvh(path: Path, motion: Motion, fps: float | None = None, units_per_metre: float = 100.0) -> None:
+def write_bvh(path: Path, motion: Motion, units_per_metre: float = 100.0) -> None:
     """Write a motion as BVH, in centimetres by default, atomically.
 
-    BVH has one frame time, so the motion is sampled at `fps` (its own if None), from its first key on. Angles are given
+    BVH has one frame time, so the motion is sampled at its `fps`, from its first key on. Angles are given
     with 6 digits: a round trip is exact to a millionth of a degree at the frames.
 
     Raises FileError if the file cannot be written.
     """
-    fps = motion.fps if fps is None else fps
-    count = frame_count(motion, fps)
+    count = frame_count(motion)
     order = _depth_first(motion.skeleton)
     text = ["HIERARCHY", *_hierarchy_lines(motion.skeleton, order[0], 0, units_per_metre), "MOTION"]
-    text += [f"Frames: {count}", f"Frame Time: {1 / fps:.9f}"]
+    text += [f"Frames: {count}", f"Frame Time: {1 / motion.fps:.9f}"]
 
     def write(file: BinaryIO) -> None:
         file.write(("\n".join(text) + "\n").encode("utf-8"))
         for first in range(0, count, PIECE):  # the whole text of an hour would need gigabytes
-            times = motion.times[0] + np.arange(first, min(first + PIECE, count)) / fps
+            times = motion.times[0] + np.arange(first, min(first + PIECE, count)) / motion.fps
             file.write(_frame_lines(motion, times, order, units_per_metre))
 
     write_atomic(path, write)

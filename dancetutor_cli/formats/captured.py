@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from dancetutor_cli.run.files import one_of
 SUFFIXES = (".bvh", ".glb", ".vrm", ".npz")
 LEAST, MOST = 10.0, 240.0  # frames per second, limits for files without a frame rate
 LONGEST = 3600.0  # seconds of an animation
+_SAME_TIME = 1e-6  # seconds; keys are 32-bit numbers, and a frame at a key has its value
 
 
 def read_source(path: Path, animation: str | None = None) -> Motion | CapturedMotion:
@@ -42,17 +43,14 @@ def read_source(path: Path, animation: str | None = None) -> Motion | CapturedMo
     if suffix in (".glb", ".vrm"):
         return _captured_from_container(read_container(path), animation)
     motion = read_bvh(path, ends=True) if suffix == ".bvh" else read_npz(path)
-    captured = captured_from_motion(path, motion)  # raises FileError if the motion is wrong
+    captured = captured_from_motion(path, motion)
     is_on_rig = suffix == ".npz" and set(dancer_skeleton().names) <= set(motion.skeleton.names)
     return motion if is_on_rig else captured
 
 
 def captured_from_motion(path: Path, motion: Motion) -> CapturedMotion:
-    """Return a motion as captured, with a rest pose without rotations."""
+    """Return a motion as captured, with a rest pose without rotations. FileError if it has one frame."""
     skeleton = motion.skeleton
-    for name, values in (("times", motion.times), ("rotations", motion.rotations), ("root", motion.root)):
-        if not np.isfinite(values).all():
-            raise FileError(path, f"its {name} hold values that are not numbers")
     if len(motion.times) < 2:
         raise FileError(path, "has one frame; a motion needs at least two")
     places, turns = world_transforms(skeleton, motion.rotations, motion.root)
@@ -101,8 +99,31 @@ def _find_animation(container: Container, wanted: str | None) -> dict[str, Any]:
     raise FileError(container.path, f"there is no animation {wanted!r}{choose_text(wanted, names)}")
 
 
-def _channels(container: Container, animation: dict[str, Any]) -> list[tuple[int, str, Array, Array]]:
-    """Return (node, path, times (n,), values (n, w)) of each channel that moves a node, without tangents of splines."""
+class _Channel(NamedTuple):
+    """What moves a node: one of "translation", "rotation" and "scale" by its keys.
+
+    times : (n,) seconds, ascending; values : (n, 3), or quaternions x, y, z, w (n, 4)
+    is_held : whether each value stays until the next key, else it goes there in a line
+    """
+
+    node: int
+    path: str
+    times: Array
+    values: Array
+    is_held: bool
+
+    def sample(self, times: Array, values: Array) -> Array:
+        """Return the channel's values (f, w) at times (f,). values : those of the keys, (n, w)"""
+        if len(self.times) == 1:
+            return np.tile(values[0], (len(times), 1))
+        if self.is_held:
+            held: Array = values[np.maximum(np.searchsorted(self.times, times + _SAME_TIME, side="right") - 1, 0)]
+            return held
+        return np.column_stack([np.interp(times, self.times, column) for column in values.T])
+
+
+def _channels(container: Container, animation: dict[str, Any]) -> list[_Channel]:
+    """Return each channel that moves a node. Of a spline, only the values at its keys are read."""
     channels, samplers = animation.get("channels"), animation.get("samplers")
     if not isinstance(channels, list) or not isinstance(samplers, list):
         raise container.fail("an animation has no channels; the file is broken")
@@ -124,25 +145,25 @@ def _channels(container: Container, animation: dict[str, Any]) -> list[tuple[int
             raise container.fail("an animation's keys do not fit together; the file is broken")
         if times[-1] - times[0] > LONGEST or abs(times).max() > 1e6:
             raise container.fail(f"an animation is longer than {LONGEST / 60:.0f} minutes")
-        out.append((node, str(path), times, values))
+        out.append(_Channel(node, str(path), times, values, sampler.get("interpolation") == "STEP"))
     if not out:
         raise container.fail("its animation moves no nodes")
     return out
 
 
-def _times(container: Container, channels: list[tuple[int, str, Array, Array]]) -> Array:
+def _times(container: Container, channels: list[_Channel]) -> Array:
     """Return evenly spaced times from the first key to the last, at the rate of the densest channel."""
-    start, end = min(t[0] for _, _, t, _ in channels), max(t[-1] for _, _, t, _ in channels)
+    start, end = min(one.times[0] for one in channels), max(one.times[-1] for one in channels)
     if end - start < 1e-3:
         raise container.fail("its animation lasts no time; a motion needs at least two moments")
-    steps = [float(np.median(np.diff(t))) for _, _, t, _ in channels if len(t) > 2]
+    steps = [float(np.median(np.diff(one.times))) for one in channels if len(one.times) > 2]
     rate = min(max(1.0 / max(min(steps, default=1.0 / LEAST), 1e-6), LEAST), MOST)
     count = max(2, round((end - start) * rate) + 1)
     return np.asarray(np.linspace(start, end, count))
 
 
 def _node_transforms(
-    container: Container, nodes: Nodes, channels: list[tuple[int, str, Array, Array]], times: Array
+    container: Container, nodes: Nodes, channels: list[_Channel], times: Array
 ) -> tuple[Array, Array, Array]:
     """Return translations (f, n, 3), rotations (f, n, 4) and scales (f, n, 3) of all nodes at the times."""
     items = container.items("nodes")
@@ -153,17 +174,12 @@ def _node_transforms(
         moved[k], scaled[k] = matrix[:3, 3], np.maximum(np.linalg.norm(matrix[:3, :3], axis=0), 1e-9)
         turned[k] = _quaternion(matrix[:3, :3] / scaled[k])
     out = [np.tile(x, (len(times), 1, 1)) for x in (moved, turned, scaled)]
-    for node, path, keys, values in channels:
-        kind = ("translation", "rotation", "scale").index(path)
-        if kind == 1:
-            values = quat.continuous(quat.normalize(values[:, [3, 0, 1, 2]]))
-        if len(keys) == 1:
-            out[kind][:, node] = values[0]
-            continue
-        for axis in range(values.shape[1]):
-            out[kind][:, node, axis] = np.interp(times, keys, values[:, axis])
-        if kind == 1:
-            out[1][:, node] = quat.normalize(out[1][:, node])
+    for one in channels:
+        if one.path == "rotation":
+            turns = quat.continuous(quat.normalize(one.values[:, [3, 0, 1, 2]]))
+            out[1][:, one.node] = quat.normalize(one.sample(times, turns))
+        else:
+            out[0 if one.path == "translation" else 2][:, one.node] = one.sample(times, one.values)
     return out[0], out[1], out[2]
 
 

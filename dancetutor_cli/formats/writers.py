@@ -22,14 +22,14 @@ def _glb(path: Path, character: Character, motion: Motion) -> str:
     from dancetutor_cli.formats.glb import write_glb
 
     write_glb(path, character, motion)
-    return keys(motion)
+    return describe_keys(motion)
 
 
 def _npz(path: Path, character: Character, motion: Motion) -> str:
     from dancetutor_cli.formats.npz import write_npz
 
     write_npz(path, motion)
-    return keys(motion)
+    return describe_keys(motion)
 
 
 def _bvh(path: Path, character: Character, motion: Motion) -> str:
@@ -37,15 +37,15 @@ def _bvh(path: Path, character: Character, motion: Motion) -> str:
 
     write_bvh(path, motion)
     start, end = motion.times[[0, -1]].tolist()  # the file itself cannot say when it begins
-    return f"{frame_count(motion, motion.fps)} frames, {end - start:.1f} s from second {start:.3f} of the music"
+    return f"{frame_count(motion)} frames, {end - start:.1f} s from second {start:.3f} of the music"
 
 
 # Each function writes the motion and returns a summary for people. Raises FileError.
 FORMATS: dict[str, Callable[[Path, Character, Motion], str]] = {".glb": _glb, ".npz": _npz, ".bvh": _bvh}
 
 
-def keys(motion: Motion) -> str:
-    """Return a summary of a motion for people."""
+def describe_keys(motion: Motion) -> str:
+    """Return a summary of a motion for people: "312 keys, 5.2 s"."""
     start, end = motion.times[[0, -1]].tolist()
     return f"{len(motion.times)} keys, {end - start:.1f} s"
 

@@ -160,7 +160,7 @@ def zero_frames(motion: Motion, count: int) -> Motion:
 
 def write_under_root(path: Path, motion: Motion, units: float = 100.0) -> None:
     """A BVH whose hips have places of their own under a root that stays on the floor."""
-    write_bvh(path, motion, motion.fps, units)
+    write_bvh(path, motion, units)
     lines = path.read_text().splitlines()
     head = lines.index("MOTION")
     body = [f"\t{line}" for line in lines[1:head]]

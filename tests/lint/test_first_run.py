@@ -14,7 +14,7 @@ import pytest
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.feet.preset import PresetChoice, load_preset
 from dancetutor_cli.feet.solver import compiled
-from dancetutor_cli.run.kernels.store import StoredCode, kernel_folder, source_digest, source_modules
+from dancetutor_cli.run.kernels.stored_code import StoredCode, kernel_folder, source_digest, source_modules
 
 
 @pytest.fixture

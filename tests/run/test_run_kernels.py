@@ -155,7 +155,7 @@ def test_a_command_runs_with_nothing_to_write_to(tmp_path: Path) -> None:
     """The program itself, whose installation is made read-only for it: a kernel that nobody can keep still runs."""
     (tmp_path / "some_kernels.py").write_text(MODULE)
     code = (
-        "from pathlib import Path; from dancetutor_cli.run.kernels import store as k\n"
+        "from pathlib import Path; from dancetutor_cli.run.kernels import stored_code as k\n"
         "k.use_folder = lambda folder: 'cannot be written'; k.temporary_folder = lambda name: None\n"
         "import some_kernels; print(some_kernels.double(4), k.kernel_folder().is_writable)"
     )

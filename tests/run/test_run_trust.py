@@ -31,8 +31,8 @@ SOMEBODY = 12345
 PROGRAM = """
 import sys
 from pathlib import Path
-from dancetutor_cli.run.kernels import store
-store.PACKAGE = Path(__file__) / "read only"
+from dancetutor_cli.run.kernels import stored_code
+stored_code.PACKAGE = Path(__file__) / "read only"
 import some_kernels
 print(some_kernels.double(4))
 """

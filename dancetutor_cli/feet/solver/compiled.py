@@ -14,7 +14,7 @@ from typing import Any
 
 from dancetutor_cli.feet.preset import Preset
 from dancetutor_cli.run.kernels import native
-from dancetutor_cli.run.kernels.store import StoredCode, kernel_folder
+from dancetutor_cli.run.kernels.stored_code import StoredCode, kernel_folder
 from dancetutor_cli.run.trust import read_file, use_folder, write_file
 
 VARIABLE = "DANCETUTOR_KERNELS"  # "python" or "compiled"; worker processes inherit it

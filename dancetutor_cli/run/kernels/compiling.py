@@ -22,7 +22,7 @@ import numpy as np
 from llvmlite import binding
 
 from dancetutor_cli.run.kernels.native import INNER_KERNELS, RESULTS, MachineCode
-from dancetutor_cli.run.kernels.store import StoredCode, pin, processor
+from dancetutor_cli.run.kernels.stored_code import StoredCode, pin, processor
 
 _ASKS_FOR_BLAS = "numba.np.arraymath"  # numba's module that imports the next one, which takes a third of a second
 _BLAS = "scipy.linalg"  # needed only for functions that no kernel uses

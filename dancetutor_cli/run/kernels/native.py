@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dancetutor_cli.run.errors import DancetutorError
-from dancetutor_cli.run.kernels.store import StoredCode
+from dancetutor_cli.run.kernels.stored_code import StoredCode
 
 RESULTS = 2  # places for a kernel's results, before its arguments
 _OBJECT_FILES = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\x64\x86", b"\x64\xaa")  # first bytes of the systems' object files
