@@ -58,7 +58,7 @@ def fit_character(path: Path) -> Character:
 
 
 def _hand_items(container: Container, nodes: Nodes, hands: set[int]) -> set[int]:
-    """Nodes of unskinned meshes below a hand: weapons and tools, often several at once to choose from."""
+    """Return the nodes of unskinned meshes below a hand: weapons and tools, often several at once to choose from."""
     below = set(hands)
     for i in nodes.order:
         if int(nodes.parents[i]) in below:
@@ -149,7 +149,10 @@ def _ground(character: Character, vertices: Array) -> float:
 
 
 def _with_rest(character: Character, rest: Array, moves: Array) -> Character:
-    """New rest positions (j, 3); moves (j, 4, 4) takes what each joint carries from the old rest place to the new."""
+    """Return the character with new rest positions (j, 3).
+
+    moves : (j, 4, 4) takes what each joint carries from the old rest place to the new
+    """
     old = character.inverse_bind.copy()
     old[:, :3, 3] += character.skeleton.rest  # from the mesh to the old rest place
     inverse_bind = moves @ old
@@ -245,8 +248,9 @@ SUFFIXES = (".glb", ".vrm")
 
 @cache
 def load_dancer() -> Character:
-    """The project's own dancer, on the joints of `dance.rig.skeleton.dancer_skeleton`, shoes in the configured colours.
+    """Return the project's own dancer, on the joints of `dance.rig.skeleton.dancer_skeleton`.
 
+    The shoes have the configured colours.
     Every call returns the same object, because reading the textures takes 0.1 s.
     """
     return _built_in(DANCER)

@@ -266,7 +266,7 @@ def _in_threes(indices: NDArray[np.int32], mode: object) -> NDArray[np.int32]:
 
 
 def vertex_normals(positions: NDArray[np.float32], triangles: NDArray[np.int32]) -> NDArray[np.float64]:
-    """Area-weighted vertex normals, (v, 3), not unit length."""
+    """Return area-weighted vertex normals, (v, 3), not of unit length."""
     a, b, c = (positions[triangles[:, k]].astype(np.float64) for k in range(3))
     face = np.cross(b - a, c - a)
     out = np.zeros((len(positions), 3))

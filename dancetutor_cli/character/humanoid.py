@@ -78,7 +78,7 @@ class Humanoid:
     trunk: tuple[int, ...]
 
     def joints(self) -> dict[int, str]:
-        """Node index -> joint of our rig. The trunk's last node moves as the rib cage (vt4) does."""
+        """Return node index -> joint of our rig. The trunk's last node moves as the rib cage (vt4) does."""
         out = {}
         for bone, node in self.bones.items():
             joint = joint_of_bone(bone)
@@ -172,7 +172,7 @@ def _from_vrm(container: Container) -> dict[str, int]:
 
 
 def _from_hanim(nodes: Nodes) -> dict[str, int]:
-    """Our own names, which are H-Anim's: there `l_shoulder` is the upper arm, elsewhere the collar bone."""
+    """Return the bones by H-Anim's names, which are our own: `l_shoulder` is the upper arm, elsewhere the collar bone."""
     place = {name: i for i, name in enumerate(nodes.names)}
     if not {"HumanoidRoot", "l_hip", "skullbase"} <= set(place):
         return {}
@@ -186,7 +186,7 @@ def _from_hanim(nodes: Nodes) -> dict[str, int]:
 
 
 def words_of(name: str) -> tuple[str, str]:
-    """Side ("left", "right", "") and plain words of a bone's name: ("left", "upleg") for "mixamorig:LeftUpLeg"."""
+    """Return the side ("left", "right", "") and plain words of a bone: ("left", "upleg") for "mixamorig:LeftUpLeg"."""
     plain = unicodedata.normalize("NFKC", name)
     if plain in _MMD:
         return "", _MMD[plain]
@@ -232,7 +232,11 @@ def _from_names(nodes: Nodes, order: list[int]) -> dict[str, int]:
 
 
 def _unnumbered(names: dict[int, str]) -> dict[int, str]:
-    """The names without the number that some sites append to every one of them, as in `LeftArm_09`."""
+    """Return the names without the number that some sites append to every one of them, as in `LeftArm_09`.
+
+    It is such a number if most names end in one and hardly two in the same. A few names may have none: those of nodes
+    that were added later.
+    """
     numbers = [found.group(1) for name in names.values() if (found := re.search(r"_(\d+)$", name))]
     if len(numbers) < 0.8 * len(names) or len(set(numbers)) < 0.9 * len(numbers):
         return names
@@ -240,7 +244,7 @@ def _unnumbered(names: dict[int, str]) -> dict[int, str]:
 
 
 def _without_shared(names: dict[int, str]) -> dict[int, str]:
-    """The names without name spaces (`Sarah:`), and without first and last words that most share (`B_`, `_JNT`)."""
+    """Return the names without name spaces (`Sarah:`) and first and last words that most share (`B_`, `_JNT`)."""
     plain = {i: re.split(r"[:|]", name)[-1] or name for i, name in names.items()}
     for shared in (r"^[^\W_]+[\W_]+(?=.)", r"(?<=.)[\W_]+[^\W_]+$"):
         while True:
@@ -253,7 +257,7 @@ def _without_shared(names: dict[int, str]) -> dict[int, str]:
 
 
 def _complete(nodes: Nodes, words: dict[int, tuple[str, str]], bones: dict[str, int]) -> None:
-    """Bones whose names mean another one elsewhere, by their place: a thigh called leg, an arm called shoulder."""
+    """Correct bones by their place where a name has several meanings: a thigh called leg, an arm called shoulder."""
     knees = {side: i for i, (side, word) in reversed(words.items()) if word in ("knee", "shin", "calf")}
     for side in ("left", "right"):
         if f"{side}UpperLeg" not in bones and side in knees:
@@ -274,7 +278,7 @@ def _complete(nodes: Nodes, words: dict[int, tuple[str, str]], bones: dict[str, 
 
 
 def _complete_tips(nodes: Nodes, words: dict[int, tuple[str, str]], bones: dict[str, int]) -> None:
-    """Hands, feet and head that are no joints of their own: the tips of forearms, shanks and neck; or face or neck."""
+    """Add hands, feet and a head that are tips of forearms, shanks and neck; the head may be a face or the neck."""
     faces = [i for i, word in words.items() if word == ("", "face")]
     if "head" not in bones and faces:
         bones["head"] = faces[0]
@@ -297,7 +301,7 @@ def _is_second(plain: str) -> bool:
 
 
 def _rigify_spine(words: dict[int, tuple[str, str]]) -> dict[str, int]:
-    """Rigify calls everything from hips (spine) to head (spine.006) spine."""
+    """Return the bones of a rig by Rigify, which calls everything from hips (spine) to head (spine.006) spine."""
     plain = {word: i for i, (_, word) in words.items()}
     if "spine" in plain and "spine006" in plain and not {"hips", "hip", "pelvis", "head"} & set(plain):
         return {"hips": plain["spine"], "neck": plain.get("spine004", plain["spine006"]), "head": plain["spine006"]}

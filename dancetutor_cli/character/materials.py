@@ -26,28 +26,30 @@ class Materials:
         self._side = 0
 
     def read(self, primitive: dict[str, Any], attribute: Attribute, count: int) -> tuple[Material, NDArray[np.float32]]:
-        """The material of a primitive of `count` vertices and their places (v, 2) in its texture."""
+        """Return the material of a primitive of `count` vertices and their places (v, 2) in its texture."""
         uv = np.zeros((count, 2), dtype=np.float32)
         if "material" not in primitive:
             return PLAIN, uv
         item = self.container.item("materials", primitive["material"])
-        factor, info = self._base(item)
+        factor, texture_info = self._base(item)
         cutoff = self._cutoff(item)
         factor[:3] = srgb_from_linear(np.clip(factor[:3], 0, 1))
         r, g, b, a = (round(float(x), 6) for x in np.clip(factor, 0, 1))
-        texture, image = None, self._image_of(info)
+        texture, image = None, self._image_of(texture_info)
         if image is not None:
-            transform = as_dict(as_dict(info.get("extensions")).get("KHR_texture_transform"))
-            places = attribute(f"TEXCOORD_{transform.get('texCoord', info.get('texCoord', 0))}", 2)
+            transform = as_dict(as_dict(texture_info.get("extensions")).get("KHR_texture_transform"))
+            number = transform.get("texCoord", texture_info.get("texCoord", 0))
+            places = attribute(f"TEXCOORD_{number}", 2)
             texture = self._pixels(image)
             if places is not None:
                 uv = self._transformed(places, transform)
         name = str(item.get("name", "material"))[:200]
-        two = item.get("doubleSided") is True
-        return Material(name, (r, g, b, 1.0 if cutoff is None else a), texture, cutoff, two), uv
+        color = (r, g, b, 1.0 if cutoff is None else a)
+        is_double_sided = item.get("doubleSided") is True
+        return Material(name, color, texture=texture, cutoff=cutoff, double_sided=is_double_sided), uv
 
     def _base(self, item: dict[str, Any]) -> tuple[NDArray[np.float64], dict[str, Any]]:
-        """Linear base colour and texture info, of the metallic or the older specular workflow."""
+        """Return the linear base colour (4,) and the texture info, of the metallic or the older specular workflow."""
         pbr = as_dict(item.get("pbrMetallicRoughness"))
         names = ("baseColorFactor", "baseColorTexture")
         older = as_dict(item.get("extensions")).get("KHR_materials_pbrSpecularGlossiness")
@@ -57,14 +59,14 @@ class Materials:
         return factor, as_dict(pbr.get(names[1]))
 
     def _cutoff(self, item: dict[str, Any]) -> float | None:
-        """Least alpha that is drawn; None where alpha means nothing. What blends is cut out at one half."""
+        """Return the alpha below which nothing is drawn, one half for what blends; None if alpha is ignored."""
         mode = item.get("alphaMode", "OPAQUE")
         if mode == "MASK":
             return float(self.container.numbers([item.get("alphaCutoff", 0.5)], 1, "an alphaCutoff")[0])
         return 0.5 if mode == "BLEND" else None
 
     def _image_of(self, info: dict[str, Any]) -> int | None:
-        """Index of the image of a texture info; None without one."""
+        """Return the index of the image of a texture info; None without one."""
         if "index" not in info:
             return None
         item = self.container.item("textures", info["index"])
@@ -83,7 +85,7 @@ class Materials:
         return self.images[image]
 
     def _longest_side(self) -> int:
-        """To what side textures are reduced, so that all base colours together stay below `ALL_TEXELS`."""
+        """Return the most pixels of a side to which textures are reduced: together they have at most `ALL_TEXELS`."""
         worn = {self._image_of(self._base(item)[1]) for item in self.container.items("materials")}
         sizes = [self.container.image_size(index) for index in sorted(worn - {None}, key=str)]
         side = MAX_SIDE
@@ -101,10 +103,10 @@ class Materials:
 
 
 def srgb_from_linear(x: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Linear light 0..1 to sRGB 0..1 (IEC 61966-2-1)."""
+    """Return sRGB 0..1 for linear light 0..1 (IEC 61966-2-1)."""
     return np.asarray(np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.maximum(x, 1e-9) ** (1 / 2.4) - 0.055))
 
 
 def linear_from_srgb(x: NDArray[np.float64]) -> NDArray[np.float64]:
-    """sRGB 0..1 to linear light 0..1 (IEC 61966-2-1)."""
+    """Return linear light 0..1 for sRGB 0..1 (IEC 61966-2-1)."""
     return np.asarray(np.where(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4))

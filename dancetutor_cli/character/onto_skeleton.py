@@ -85,9 +85,9 @@ def _under_ball(skeleton: Skeleton, side: str) -> Array:
 
 
 def _root(motion: Motion, own: Skeleton, turned: Array, limbs: list[_LimbGoal]) -> Array:
-    """Root positions (f, 3): her height and her sway between the feet in proportion to the legs, within their reach.
+    """Return root positions (f, 3): height and sway between the feet in proportion to the legs, within their reach.
 
-    She sinks for a wide stance, early and smoothly; only what is left is a pull towards the target.
+    The character sinks for a wide stance, early and smoothly; only what is left is a pull towards the target.
     """
     share = min(1.0, own.rest[0, 1] / motion.skeleton.rest[0, 1])
     middle = np.mean([limb.target for limb in limbs if limb.chain is _LEG], axis=0)
@@ -118,7 +118,7 @@ def _lengths(skeleton: Skeleton, side: str, chain: tuple[str, str, str]) -> tupl
 
 
 def _limb(own: Skeleton, turned: Array, root: Array, limb: _LimbGoal, source: dict[str, tuple[Array, Array]]) -> Array:
-    """World rotations with one limb solved: its end at `target` where weight (f,) is 1, its bend as the dancer's.
+    """Return world rotations with one limb solved: its end at `target` where weight (f,) is 1, bent as the dancer's.
 
     The cosine law gives the bend; the twist of both bones stays the dancer's. The last joint keeps its world rotation.
     """
@@ -149,7 +149,7 @@ def _limb(own: Skeleton, turned: Array, root: Array, limb: _LimbGoal, source: di
 
 
 def _carry(own: Skeleton, before: Array, after: Array, moved: tuple[int, int]) -> Array:
-    """Joints of the limb that have no counterpart (twist bones, between the named ones) turn with their parent."""
+    """Turn joints of the limb that have no counterpart (twist bones, between the named ones) with their parent."""
     named = {"hip", "knee", "talocrural", "metatarsal", "shoulder", "elbow", "radiocarpal"}
     dirty = set(moved)
     for j, parent in enumerate(own.parents.tolist()):
@@ -161,7 +161,7 @@ def _carry(own: Skeleton, before: Array, after: Array, moved: tuple[int, int]) -
 
 
 def _hand_weight(motion: Motion, limb: int) -> Array:
-    """1 while the hand presses a panel or holds the bar, easing in and out over `HAND_BLEND`; (f,)."""
+    """Return weights (f,): 1 while the hand presses a panel or holds the bar, eased over `HAND_BLEND`."""
     out = np.zeros(len(motion.times))
     spans = [(c.start, c.end) for c in motion.contacts if c.limb == limb]
     spans += [(g.start, g.end) for g in motion.grips if g.side == limb - Limb.LEFT_HAND]

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -21,16 +18,12 @@ from dancetutor_cli.dance.physics.captured import on_body, upright
 from dancetutor_cli.dance.physics.hair import add_hair
 from dancetutor_cli.dance.physics.pipeline import through_ragdoll
 from dancetutor_cli.dance.physics.ragdoll import bones_of, place_points, points_of
-from dancetutor_cli.dance.physics.style import NEUTRAL, load_style
-from dancetutor_cli.dance.physics.tuning import Tuning, search_tuning
+from dancetutor_cli.dance.physics.tuning import tuning_of
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.dance.settings import default_settings
 from dancetutor_cli.run.errors import DancetutorError, FileError
-from dancetutor_cli.run.files import write_atomic
-from dancetutor_cli.run.reading import config_path, read_json
-from dancetutor_cli.run.trust import kept_folder
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -42,8 +35,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.dance.quality.figures import MotionReport
     from dancetutor_cli.dance.rig.skeleton import Skeleton
     from dancetutor_cli.dance.units import Array
-
-SCHEMA = b"1"  # changes with the form of the kept tuning
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,10 +133,13 @@ class Retargeting:
         return onto(self.input_on_body, self.character.skeleton)
 
     def point_paths(self) -> tuple[tuple[str, ...], Array, Array]:
-        """Names of the p retargeting points, and their places (f, p, 3) at the keys of input and output, metres."""
+        """Return the names of the p retargeting points, and their places (f, p, 3) at the keys of input and output.
+
+        They are the points of the style with the largest weight.
+        """
         before, after = self.input_on_body, self.ragdoll_result.motion
         bones = bones_of(self.body)
-        styles, _ = self.blend.within(after.times)  # the largest weight comes first: points of that style are measured
+        styles, _ = self.blend.within(after.times)  # the largest weight comes first
         points = tuple(p for p in points_of(self.body, bones, styles[0]) if not p.extra)
         given, made = (place_points(self.body, bones, points, m.rotations, m.root) for m in (before, after))
         return tuple(p.name for p in points), given, made
@@ -156,7 +150,7 @@ class Retargeting:
         return self.task.file.stem
 
     def report(self) -> MotionReport:
-        """The quality of the motion on the body, its faults before and after, and the ragdoll's distances."""
+        """Return the quality of the motion on the body, its faults before and after, and the ragdoll's distances."""
         from dancetutor_cli.dance.quality.report import fault_figures, report, with_distances
 
         passed = self.ragdoll_result
@@ -169,7 +163,7 @@ class Retargeting:
         return replace(whole, curves=whole.curves | self._point_curves())
 
     def _point_curves(self) -> dict[str, tuple[Array, Array]]:
-        """Over the keys, of input and output (f, 2): speed of each retargeting point, and how far bones are turned."""
+        """Return curves over the keys, of input and output (f, 2): speeds of retargeting points, turns of bones."""
         names, *paths = self.point_paths()
         motions, times = (self.input_on_body, self.ragdoll_result.motion), self.input_on_body.times
         speeds = [100.0 * np.linalg.norm(np.gradient(path, times, axis=0), axis=2) for path in paths]
@@ -178,21 +172,3 @@ class Retargeting:
             turns = [np.linalg.norm(quat.to_vector(m.rotations[:, bone.joint]), axis=1) for m in motions]
             out[f"angle of {bone.name}, degrees"] = np.degrees(np.stack(turns, axis=1))
         return {name: (times, values) for name, values in out.items()}
-
-
-def tuning_of(body: Skeleton) -> Tuning:
-    """Return the springs and densities of a body, from the cache or by a short search."""
-    digest = hashlib.sha256(body.offsets.round(6).tobytes())
-    digest.update(config_path(f"styles/{NEUTRAL}.yaml").read_bytes() + SCHEMA)
-    folder = kept_folder("bodies")
-    path = None if folder is None else folder / f"{digest.hexdigest()[:32]}.json"
-    if path is not None:
-        with suppress(FileError):
-            found = Tuning.from_json(read_json(path))
-            if found is not None:
-                return found
-    tuning = search_tuning(body, load_style(NEUTRAL))
-    if path is not None:
-        with suppress(OSError, FileError):
-            write_atomic(path, json.dumps(tuning.as_json(), indent=1).encode())
-    return tuning

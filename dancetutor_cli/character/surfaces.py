@@ -174,7 +174,7 @@ _EVEN = 0.02  # colours that differ less than this are one
 
 
 def drawable(character: Character, places: NDArray[np.float64]) -> Character:
-    """The character with plain materials. places : all vertices at rest, in metres (v, 3), mesh after mesh."""
+    """Return the character with plain materials. places : all vertices at rest, in metres (v, 3), mesh after mesh."""
     first = np.cumsum([0, *(len(m.positions) for m in character.meshes)])
     meshes = []
     bled: dict[int, NDArray[np.uint8]] = {}
@@ -190,7 +190,7 @@ def drawable(character: Character, places: NDArray[np.float64]) -> Character:
 
 
 def _painted(mesh: Mesh, places: NDArray[np.float64]) -> tuple[Mesh, NDArray[np.float64]]:
-    """Vertex colours as base colour or, where they vary and there is no texture, as one paint for each triangle."""
+    """Return vertex colours as base colour; where they vary and there is no texture, as one paint a triangle."""
     if mesh.colors is None:
         return mesh, places
     material, colors = mesh.material, mesh.colors.astype(np.float64)
@@ -218,7 +218,7 @@ def _rgba(rgb: NDArray[np.float64], material: Material) -> tuple[float, float, f
 
 
 def _swatches(palette: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-    """A texture (h, w, 4) with a block for each colour (n, 3), and the middles of the blocks (n, 2)."""
+    """Return a texture (h, w, 4) with a block for each colour (n, 3), and the middles of the blocks (n, 2)."""
     across = int(np.ceil(np.sqrt(len(palette))))
     grid = np.full((across * across, 4), 255, np.uint8)
     grid[: len(palette), :3] = palette

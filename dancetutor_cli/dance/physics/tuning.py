@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -13,11 +16,14 @@ from dancetutor_cli.dance.physics.blend import Blend
 from dancetutor_cli.dance.physics.pipeline import through_ragdoll
 from dancetutor_cli.dance.physics.ragdoll import NOMINAL, bones_of
 from dancetutor_cli.dance.physics.simulation import DEVIATION, LARGEST, MEAN
-from dancetutor_cli.dance.physics.style import PARTS, Spring, Style
+from dancetutor_cli.dance.physics.style import NEUTRAL, PARTS, Spring, Style, load_style
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import PARTS as MASSES
 from dancetutor_cli.dance.rig.skeleton import Skeleton
-from dancetutor_cli.run.errors import DancetutorError
+from dancetutor_cli.run.errors import DancetutorError, FileError
+from dancetutor_cli.run.files import write_atomic
+from dancetutor_cli.run.reading import config_path, read_json
+from dancetutor_cli.run.trust import kept_folder
 
 # Densities give each part its share of the mass of a person. Then the search finds the frequency and the damping of all
 # springs with which the ragdoll follows the clip most closely, by the goals of one-on-one simulation.
@@ -25,6 +31,7 @@ from dancetutor_cli.run.errors import DancetutorError
 FREQUENCIES, DAMPINGS = (24.0, 28.0, 32.0, 36.0, 40.0), (0.4, 0.5, 0.65)
 STURDY = 22.0  # kg/m^2: a body's mass is this times the square of its height
 DENSITIES = (400.0, 3000.0)  # allowed kg/m^3 of a part
+SCHEMA = b"1"  # changes with the form of a stored tuning
 OVER_SKULL = 0.17  # metres from the joint of the skull to the crown
 _ROUND = 0.6  # seconds of one swing of the standard clip
 
@@ -68,6 +75,27 @@ class Tuning:
         except (KeyError, TypeError, ValueError):
             return None
         return cls(values[0], values[1], density) if all(0 < v < 1e5 for v in values) else None
+
+
+def tuning_of(body: Skeleton) -> Tuning:
+    """Return the springs and densities of a body, stored by an earlier run or by a short search.
+
+    They depend on the body and on the style `neutral`.
+    """
+    digest = hashlib.sha256(body.offsets.round(6).tobytes())
+    digest.update(config_path(f"styles/{NEUTRAL}.yaml").read_bytes() + SCHEMA)
+    folder = kept_folder("bodies")
+    path = None if folder is None else folder / f"{digest.hexdigest()[:32]}.json"
+    if path is not None:
+        with suppress(FileError):
+            found = Tuning.from_json(read_json(path))
+            if found is not None:
+                return found
+    tuning = search_tuning(body, load_style(NEUTRAL))
+    if path is not None:
+        with suppress(OSError, FileError):
+            write_atomic(path, json.dumps(tuning.as_json(), indent=1).encode())
+    return tuning
 
 
 def search_tuning(body: Skeleton, neutral: Style) -> Tuning:
