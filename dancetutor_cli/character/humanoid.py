@@ -172,7 +172,7 @@ def _from_vrm(container: Container) -> dict[str, int]:
 
 
 def _from_hanim(nodes: Nodes) -> dict[str, int]:
-    """Return the bones by H-Anim's names, which are our own: `l_shoulder` is the upper arm, elsewhere the collar bone."""
+    """Return the bones by H-Anim's names, which are ours: `l_shoulder` is the upper arm, elsewhere the collar bone."""
     place = {name: i for i, name in enumerate(nodes.names)}
     if not {"HumanoidRoot", "l_hip", "skullbase"} <= set(place):
         return {}

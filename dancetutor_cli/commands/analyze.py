@@ -11,7 +11,6 @@ from typing import IO, TYPE_CHECKING
 import click
 
 from dancetutor_cli.chart.selection import Selection, find_files, note_bytes
-from dancetutor_cli.commands import GroupedCommand
 from dancetutor_cli.commands.analyze_options import AnalyzeOptions
 from dancetutor_cli.commands.arguments import (
     GivenPath,
@@ -28,6 +27,7 @@ from dancetutor_cli.commands.arguments import (
 )
 from dancetutor_cli.commands.drawings import check_sheet, check_sync_plot, write_sheet, write_sync_plot
 from dancetutor_cli.commands.first_run import announce_compiling
+from dancetutor_cli.commands.option_groups import GroupedCommand
 from dancetutor_cli.commands.pack import (
     PackReport,
     check_comparison,
@@ -67,7 +67,7 @@ def _explain(context: click.Context, _: click.Parameter, value: str | None) -> N
 
 
 @click.command(cls=GroupedCommand)
-@click.argument("paths", nargs=-1, required=True, type=GivenPath(allow_dash=True, holds_charts=True), metavar="PATH...")
+@click.argument("paths", nargs=-1, required=True, type=GivenPath(allow_dash=True, untrusted=True), metavar="PATH...")
 @selection_options
 @preset_option
 @click.option(

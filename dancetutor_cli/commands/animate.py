@@ -10,9 +10,9 @@ import click
 
 from dancetutor_cli.chart.selection import Selection, note_bytes, one_song
 from dancetutor_cli.chart.timing import FASTEST, SLOWEST, heard_second
-from dancetutor_cli.commands import GroupedCommand
 from dancetutor_cli.commands.arguments import LONG, GivenPath, Number, confirm_long, default_name, warn
 from dancetutor_cli.commands.first_run import announce_compiling
+from dancetutor_cli.commands.option_groups import GroupedCommand
 from dancetutor_cli.commands.shared_options import (
     TABLE,
     DanceOptions,
@@ -59,7 +59,7 @@ class AnimateOptions:
 
 
 @click.command(cls=GroupedCommand)
-@click.argument("file", type=GivenPath(holds_charts=True))
+@click.argument("file", type=GivenPath(untrusted=True))
 @click.option(
     "-o",
     "--output",

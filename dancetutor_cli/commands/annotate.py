@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 import click
 
 from dancetutor_cli.chart.selection import Selection, find_files, note_bytes
-from dancetutor_cli.commands import GroupedCommand
 from dancetutor_cli.commands.arguments import GivenPath, WholeNumber, report_error, warn, within_folders
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.folder_run import JoinedWarnings
+from dancetutor_cli.commands.option_groups import GroupedCommand
 from dancetutor_cli.commands.shared_options import (
     exclude_option,
     into,
@@ -69,7 +69,7 @@ class AnnotateOptions:
 
 
 @click.command(cls=GroupedCommand)
-@click.argument("paths", nargs=-1, required=True, type=GivenPath(holds_charts=True), metavar="PATH...")
+@click.argument("paths", nargs=-1, required=True, type=GivenPath(untrusted=True), metavar="PATH...")
 @click.option(
     "--markers", "styles", callback=_styles, metavar="KIND[,KIND]",
     help=f"How to write the feet: {', '.join(STYLES)} (theme shows them during play). "

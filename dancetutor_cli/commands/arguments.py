@@ -34,10 +34,10 @@ class GivenPath(click.Path):
     `annotate ""` would write into every file below it.
     """
 
-    def __init__(self, *, holds_charts: bool = False, **options: Any) -> None:
-        """holds_charts : whether charts are read there, so that no code may be loaded from there."""
+    def __init__(self, *, untrusted: bool = False, **options: Any) -> None:
+        """untrusted : whether files of strangers are read there, so that no code may be loaded from there."""
         super().__init__(path_type=Path, **options)
-        self._holds_charts = holds_charts
+        self._untrusted = untrusted
 
     def convert(
         self, value: str | os.PathLike[str], param: click.Parameter | None, ctx: click.Context | None
@@ -45,7 +45,7 @@ class GivenPath(click.Path):
         if value == "":
             self.fail("the name is empty; write . for the folder you are in", param, ctx)
         path = super().convert(value, param, ctx)
-        if self._holds_charts and value != "-":
+        if self._untrusted and value != "-":
             exclude(Path(os.fsdecode(path)))
         return path
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 from click.shell_completion import BashComplete, ShellComplete, add_completion_class, get_completion_class
 
-from dancetutor_cli.commands import GroupedCommand
+from dancetutor_cli.commands.option_groups import GroupedCommand
 from dancetutor_cli.run.errors import FileError, UsageError
 
 PROGRAM, VARIABLE = "dancetutor", "_DANCETUTOR_COMPLETE"

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import click
 
-from dancetutor_cli.commands import GroupedCommand
+from dancetutor_cli.commands.option_groups import GroupedCommand
 from dancetutor_cli.run.errors import DancetutorError, UnavailableError, install_command, plural
 from dancetutor_cli.run.foreign_text import json_without_commands
 

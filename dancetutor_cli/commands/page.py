@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import click
 
 from dancetutor_cli.chart.selection import Selection, one_song
-from dancetutor_cli.commands import GroupedCommand
 from dancetutor_cli.commands.arguments import GivenPath, warn
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.commands.folder_run import FolderRun, JoinedWarnings
+from dancetutor_cli.commands.option_groups import GroupedCommand
 from dancetutor_cli.commands.shared_options import (
     DanceOptions,
     character_option,
@@ -54,7 +54,7 @@ class PageOptions:
 
 
 @click.command(cls=GroupedCommand)
-@click.argument("path", type=GivenPath(holds_charts=True))
+@click.argument("path", type=GivenPath(untrusted=True))
 @click.option(
     "-o",
     "--output",

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 import click
 
 from dancetutor_cli.chart.selection import Selection, one_song
-from dancetutor_cli.commands import GroupedCommand
 from dancetutor_cli.commands.arguments import LONG, GivenPath, WholeNumber, confirm_long, default_name, note, warn
 from dancetutor_cli.commands.film_options import RenderOptions, film_options, film_request
 from dancetutor_cli.commands.first_run import announce_compiling
+from dancetutor_cli.commands.option_groups import GroupedCommand
 from dancetutor_cli.commands.shared_options import (
     DanceOptions,
     exclude_option,
@@ -53,7 +53,7 @@ _NO_BACKGROUND = (
 
 
 @click.command(cls=GroupedCommand)
-@click.argument("path", type=GivenPath(holds_charts=True))
+@click.argument("path", type=GivenPath(untrusted=True))
 @click.option(
     "-o",
     "--output",

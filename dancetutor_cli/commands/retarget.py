@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from dancetutor_cli.commands import GroupedCommand
 from dancetutor_cli.commands.arguments import GivenPath, warn
+from dancetutor_cli.commands.option_groups import GroupedCommand
 from dancetutor_cli.commands.shared_options import (
     character_option,
     check_targets,
@@ -47,7 +47,7 @@ class RetargetOptions:
 
 
 @click.command(cls=GroupedCommand)
-@click.argument("file", type=GivenPath(holds_charts=True))
+@click.argument("file", type=GivenPath(untrusted=True))
 @click.option(
     "-o",
     "--output",
@@ -99,7 +99,7 @@ def command(file: Path, options: RetargetOptions) -> None:
     ragdoll = replace(ragdoll, corrections=corrections_of(options.correct), own_legs=True)
     task = RetargetTask(file, options.character, options.style or "neutral", ragdoll)
     work = Retargeting(task, read_source(file, options.animation))
-    words = _written(work, options.output, options.with_input)
+    words = _write_output(work, options.output, options.with_input)
     warn(work.ragdoll_result.motion.notes)
     click.echo(f"{options.output}: {words}")
     if options.report_to is not None or options.plot is not None:
@@ -115,10 +115,11 @@ def corrections_of(text: str) -> tuple[str, ...]:
     return tuple(word for word in _CORRECTIONS if word in words)
 
 
-def _written(work: Retargeting, output: Path, with_input: bool) -> str:
+def _write_output(work: Retargeting, output: Path, with_input: bool) -> str:
+    """Bake the motion and write it; return a summary for people."""
     from dancetutor_cli.dance.physics.style import engine
 
-    engine()
+    engine()  # raises an error if MuJoCo is not installed, before the character is read
     motion = work.output_on_character
     suffix = output.suffix.lower()
     if suffix == ".mp4":

@@ -12,7 +12,7 @@ import numpy as np
 
 from dancetutor_cli.chart.reader import load
 from dancetutor_cli.chart.selection import Selection
-from dancetutor_cli.commands import GroupedCommand
+from dancetutor_cli.commands.option_groups import GroupedCommand
 from dancetutor_cli.commands.shared_options import quiet_option
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.feet.preset import DEFAULT_PRESET
@@ -32,7 +32,7 @@ _SONG = "two_left_feet/two_left_feet.ssc"
 _TYPES = ("dance-single", "dance-double")
 
 
-def steps() -> Iterator[tuple[str, Callable[[], None]]]:
+def pieces_of_work() -> Iterator[tuple[str, Callable[[], None]]]:
     """Yield the name and the function of each piece of work."""
     prepared: dict[str, PreparedFilm] = {}
     for steps_type in _TYPES:
@@ -94,9 +94,8 @@ def command(quiet: bool) -> None:
 
     Solve, bake and draw a few frames of the demo song. This fills the cache of compiled code.
     """
-
     begin = time.monotonic()
-    for name, work in steps():
+    for name, work in pieces_of_work():
         started = time.monotonic()
         work()
         if not quiet:

@@ -10,7 +10,8 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from dancetutor_cli.commands import COMMANDS, GROUPS, RENAMED, cli
+from dancetutor_cli.commands import COMMANDS, cli
+from dancetutor_cli.commands.option_groups import GROUPS, RENAMED
 
 
 def command_named(name: str) -> click.Command:
