@@ -53,6 +53,7 @@ REASONS = {
     "feet/solver/compiled.py": "chooses without numba whether kernels are compiled",
     "film/media/yuv.py": "kernels; encoder works without them",
     "page/capture.py": "needs the film of a motion, which a page of a chart does without",
+    "commands/option_groups.py": "the commands use it, which the list of commands does not import",
     "run/markup.py": "pages and reports use it, which know nothing of each other",
     "dance/ik/trunk.py": "hands and targets change now; then it joins them or the knees",
 }  # fmt: skip

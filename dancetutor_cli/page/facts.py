@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 # The words of a song and a chart, the places of notes, and the seconds of beats.
 
 BEATS_AFTER = 16  # number of beats in the page after the last note
-
-
 _LONGEST = 300  # maximum letters of a title, an artist, a credit
 
 
@@ -133,6 +131,9 @@ def tags(passage: Passage) -> list[tuple[str, int]]:
     return [first, *((name, count) for name, count in counted if count)]
 
 
+_PLAIN = 3.0  # steps a second below which a passage of mere steps is not listed
+
+
 def passage_object(passage: Passage, player: int = 0) -> dict[str, Any]:
     """Return the object of a passage for the page; player : its player in a chart for two, from 1."""
     return {
@@ -145,9 +146,6 @@ def passage_object(passage: Passage, player: int = 0) -> dict[str, Any]:
         "tags": [list(tag) for tag in tags(passage)],
         "player": player,
     }
-
-
-_PLAIN = 3.0  # steps a second below which a passage of mere steps is not listed
 
 
 def without_repeats(passages: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:

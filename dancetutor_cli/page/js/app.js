@@ -1,4 +1,4 @@
-// The page's state and everything that can be done with it; panels and keys only call what is here.
+// The state of the page and all actions on it. Panels and keys call only these.
 
 import { Chart } from "./chart.js";
 import { Transport } from "./clock.js";
@@ -21,7 +21,7 @@ export class App {
     this.settings = loadSettings();
     const { language, t } = speak(doc.languages, this.settings.language || doc.language);
     this.language = language;
-    this.t = t; // another one after `setLanguage`: who keeps it is made anew then
+    this.t = t; // `setLanguage` replaces it; objects that hold `t` are then made again
     this.chart = new Chart(doc, arrays);
     this.id = `${doc.words.file}#${doc.words.index}:${doc.play.total}`;
     this.notes = loadNotes(this.id);
@@ -51,14 +51,14 @@ export class App {
     };
     this.pace = scrollSpeed(this.chart.rowSeconds);
     this.redance = new Redance(doc, this.chart, this.notes.feet);
-    this.both = false; // the second dancer is shown
-    this.chosen = -1; // note that the author looks at
-    this.chosenAt = NaN; // the second that stood then
-    this.passage = -1; // of the list, that is looped
-    this.fresh = true; // something is to be drawn
+    this.both = false; // whether the second dancer is shown
+    this.chosen = -1; // the note that the author has chosen; -1 for none
+    this.chosenAt = NaN; // the second of the clock at that choice
+    this.passage = -1; // index of the passage that is looped; -1 for none
+    this.fresh = true; // whether the picture must be drawn again
     this.drawn = NaN; // the second that was drawn last
     this.played = false; // whether anybody has pressed play yet
-    this.notice = ""; // what is to be known of a link; until something else is done
+    this.notice = ""; // a message, shown until the next action
     this.musicName = ""; // the file that the music comes from
     this.musicBad = ""; // the file that is no music
     this.musicLoading = false; // the page's own is being unpacked
@@ -72,12 +72,12 @@ export class App {
     this.onLanguage = () => {};
   }
 
-  /** Beats of getting ready before a loop; at a higher speed as many. */
+  /** The number of beats before a loop, at any speed. */
   get leadBeats() {
     return this.settings.countIn ? this.settings.leadBeats : 0;
   }
 
-  /** Whether steps are clapped: as asked for, else where there is no music. */
+  /** Whether steps are clapped: by the setting, or if that is "auto", if there is no music. */
   get claps() {
     return this.settings.claps === "auto" ? !this.sound.music && !this.musicLoading : this.settings.claps === "on";
   }
@@ -87,17 +87,17 @@ export class App {
     this.set("claps", on ? "on" : "off");
   }
 
-  /** Tell the panels. @param {string} what */
+  /** Tell all listeners what has changed. @param {string} what */
   tell(what) {
     this.fresh = true;
     for (const listener of this.listeners) listener(what);
   }
 
-  /** The clock does something else than before. */
+  /** React to a change of the clock: it plays, pauses or jumps. */
   changed() {
     this.sound.follow(this.transport.run);
     if (!this.transport.playing) {
-      this.practice.keep();
+      this.practice.recordOutcomes();
       this.practice.feedback = null;
     }
     this.tell("clock");
@@ -124,7 +124,7 @@ export class App {
     this.tell("settings");
   }
 
-  /** Speak another language, from now on. @param {string} name "": the browser's */
+  /** Change the language. @param {string} name "": the browser's */
   setLanguage(name) {
     this.set("language", name);
     Object.assign(this, speak(this.doc.languages, name || this.doc.language));
@@ -132,7 +132,7 @@ export class App {
     this.tell("settings");
   }
 
-  /** The second that is seen now: what is heard now was scheduled a little earlier, and the screen may be late. */
+  /** Return the second of the music that is seen now: sound is heard later than it is scheduled, and a screen may be late. */
   second() {
     const { transport, sound } = this;
     const heard = transport.second() - (transport.playing && !transport.waiting ? (sound.latency - this.settings.sight) * transport.rate : 0);
@@ -152,7 +152,7 @@ export class App {
     this.practice.updateHold();
   }
 
-  /** From the beginning, without a loop. */
+  /** Play from the beginning, without a loop. */
   async begin() {
     this.setLoop(null, null);
     this.transport.pause();
@@ -160,20 +160,20 @@ export class App {
     await this.play();
   }
 
-  /** What a mat's Start does: play along, pause; after a result the same again. */
+  /** Do what Start of a mat does: play along or pause; after a result, begin again. */
   async padStart() {
     if (this.practice.over) return this.begin();
-    if (!this.transport.playing && !this.practice.along) this.practice.setAlong(true); // who stands on a mat means to play
+    if (!this.transport.playing && !this.practice.along) this.practice.setAlong(true); // a user on a mat wants to play along
     await this.play();
   }
 
-  /** Back to the loop's start, or the song's; what plays goes on from there. */
+  /** Go back to the start of the loop or of the song; playing goes on. */
   toStart() {
     if (this.transport.loop) this.restartLoop();
     else this.seek(this.opening);
   }
 
-  /** From the loop's lead-in. */
+  /** Go back to the lead-in of the loop. */
   restartLoop() {
     const { loop } = this.transport;
     if (!loop) return;
@@ -191,12 +191,12 @@ export class App {
     if (!this.transport.playing) await this.play();
   }
 
-  /** Where whoever plays begins: a little before the first step. */
+  /** The second at which playing begins: a little before the first step. */
   get opening() {
     return Math.max(this.start, this.chart.first - 2);
   }
 
-  /** As the page opens: half a second before the first step, so that notes are in sight. */
+  /** Go to where the page opens: half a second before the first step, so that notes are visible. */
   rewind() {
     this.seek(Math.max(this.start, this.chart.first - 0.5));
     this.played = false;
@@ -211,7 +211,7 @@ export class App {
     this.practice.updateHold();
   }
 
-  /** Whoever goes out of a loop has done with it. @param {number} second */
+  /** End the loop if a second is outside of it. @param {number} second */
   leaveLoop(second) {
     const { loop } = this.transport;
     if (!loop || (second >= this.transport.lead(loop.a) - 1e-3 && second <= loop.b + 1e-3)) return;
@@ -220,7 +220,7 @@ export class App {
     this.notice = this.t("loopLeft", { where });
   }
 
-  /** Hold the pose of the next row or the one before. @param {number} by */
+  /** Pause at the next row or the row before. @param {number} by 1 or -1 */
   step(by) {
     if (this.transport.playing) this.transport.pause();
     const rows = this.chart.rowSeconds;
@@ -230,24 +230,24 @@ export class App {
     const next = by > 0 ? now + 1 : on ? now - 1 : now;
     const number = Math.min(Math.max(next, 0), rows.length - 1);
     this.seek(rows[number]);
-    if (this.chosen >= 0) this.choose(this.chart.rows[number].steps[0].note); // who looks at feet goes on looking at them
+    if (this.chosen >= 0) this.choose(this.chart.rows[number].steps[0].note); // if a note was chosen, choose one of this row
   }
 
-  /** A note is looked at; -1: none is. @param {number} note */
+  /** Choose a note; -1 for none. @param {number} note */
   choose(note) {
     this.chosen = note;
     this.chosenAt = this.transport.second();
     this.tell("feet");
   }
 
-  /** The note that the author means: the one that was chosen, or of the row that has been gone to since. */
+  /** Return the chosen note or, if the clock has moved since, a note of the row where it is now. */
   meant() {
     const second = this.transport.second();
     if (this.chosen >= 0 && Math.abs(second - this.chosenAt) < 1e-3) return this.chosen;
     return this.chart.rows[this.chart.rowAt(second)]?.steps[0].note ?? this.chosen;
   }
 
-  /** Stand at a note and look at it. @param {number} note */
+  /** Pause at a note and choose it. @param {number} note */
   goTo(note) {
     const row = this.redance.rowOf.get(note);
     if (!row) return;
@@ -270,7 +270,7 @@ export class App {
     writeLink(this);
   }
 
-  /** The speed is this one, and no other is come back to. @param {number} rate */
+  /** Set the speed; it is also the one to which the ramp comes back. @param {number} rate */
   takeRate(rate) {
     this.transport.setRate(rate);
     this.practice.chosenRate = this.transport.rate;
@@ -288,7 +288,7 @@ export class App {
     writeLink(this);
   }
 
-  /** The loop begins or ends now, at the nearest beat. @param {"a" | "b"} end */
+  /** Begin or end the loop at the beat nearest to now. @param {"a" | "b"} end */
   loopHere(end) {
     const here = this.chart.secondAt(Math.max(0, Math.round(this.chart.beatAt(this.transport.second()))));
     const bar = this.chart.secondAt(this.chart.beatAt(here) + (end === "a" ? 8 : -8));
@@ -319,7 +319,7 @@ export class App {
     this.set("help", HELPS[(HELPS.indexOf(this.settings.help) + 1) % HELPS.length]);
   }
 
-  /** The free camera stands as at first. */
+  /** Put the free camera back to its first place. */
   resetView() {
     Object.assign(this.settings, FIRST_VIEW);
     this.setCamera("free");
@@ -330,12 +330,12 @@ export class App {
     if (CAMERAS.includes(name)) this.set("camera", name);
   }
 
-  /** Mirrored lanes fit a dancer who is seen from before; whoever plays along has the mat's own. */
+  /** Whether lanes are mirrored: they are for a dancer seen from the front, unless the user plays along. */
   get mirrored() {
     return this.settings.camera === "front" && !this.practice.along;
   }
 
-  /** The row whose feet are shown as soles on the pad: the next one, while the picture stands. */
+  /** Return the row whose feet are shown as soles on the pad: while the picture stands still, the next one; else null. */
   nextRow() {
     const { transport, chart } = this;
     if (transport.playing && !transport.waiting) return null;
@@ -344,7 +344,7 @@ export class App {
     return row && this.practice.tells(row) ? row : null;
   }
 
-  /** Give a note to another foot, and back. @param {number} note */
+  /** Give a note to the other foot, or back. @param {number} note */
   giveOther(note) {
     this.redance.toggle(note);
     this.notes.feet = this.redance.stored();
@@ -352,7 +352,7 @@ export class App {
     this.tell("feet");
   }
 
-  /** Tick a finding off, or not. @param {string} key @param {boolean} on */
+  /** Tick a finding off, or undo that. @param {string} key @param {boolean} on */
   tick(key, on) {
     this.notes.ticked = this.notes.ticked.filter((one) => one !== key);
     if (on) this.notes.ticked.push(key);
@@ -360,7 +360,7 @@ export class App {
     this.tell("findings");
   }
 
-  /** Everything that is drawn for one picture. @param {import("./timeline.js").Timeline} timeline */
+  /** Advance the practice, and draw one picture if anything has changed. @param {import("./timeline.js").Timeline} timeline */
   frame(timeline) {
     const { transport, sound } = this;
     this.input.poll();
@@ -369,8 +369,8 @@ export class App {
     const second = this.second();
     this.practice.advance(second);
     this.practice.fade();
-    // While she waits, or nothing plays, the picture stays: nothing is drawn again.
-    const shown = this.practice.feedback !== null; // and once more when it has to go
+    // While the dancer waits or nothing plays, the picture stays the same and is not drawn again.
+    const shown = this.practice.feedback !== null; // a verdict fades, so the picture changes
     if (!this.fresh && !shown && second === this.drawn && !timeline.grip && !this.input.changed) return;
     this.drawn = second;
     this.input.changed = false;

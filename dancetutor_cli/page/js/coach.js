@@ -41,7 +41,7 @@ export class Coach {
   /** @param {Target | null} [target] else the loop that there is, else what comes next */
   async start(target = this.looped()) {
     const { app, practice } = this;
-    practice.keep();
+    practice.recordOutcomes();
     const found = target ?? this.next();
     if (!found) {
       app.notice = app.t("coachNothing");

@@ -94,7 +94,7 @@ export function listenToKeys(app, actions) {
     // Whoever plays along looks for panels under the arrows: they neither seek nor change the speed then.
     if (app.practice.along && arrows(event)) {
       event.preventDefault();
-      return app.practice.strayKey();
+      return app.practice.showKeys();
     }
     const name = event.shiftKey && (event.key.length > 1 || /[A-Z]/.test(event.key)) ? `Shift+${event.key}` : event.key;
     const action = actions.find((one) => one.keys.includes(name) || one.keys.includes(name.toLowerCase()));
@@ -103,7 +103,7 @@ export function listenToKeys(app, actions) {
       event.preventDefault();
       return app.practice.idle();
     }
-    if (!action) return event.key.length === 1 && app.practice.along ? app.practice.strayKey() : undefined;
+    if (!action) return event.key.length === 1 && app.practice.along ? app.practice.showKeys() : undefined;
     event.preventDefault();
     action.run();
   });

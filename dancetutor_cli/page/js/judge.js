@@ -1,4 +1,4 @@
-// Whether panels are pressed in time. A pad knows panels, not feet: which foot it was nobody can tell.
+// Judges whether panels are pressed in time. A pad knows panels, not feet, so nobody can tell which foot it was.
 
 /** Seconds of real time around a note in which a press counts. */
 export const WINDOW = 0.135;
@@ -16,40 +16,40 @@ export class Judge {
     this.verdicts = new Map();
     /** @type {Map<number, number>} seconds that a note was pressed late, by note */
     this.errors = new Map();
-    /** @type {number[]} seconds at which a panel was pressed that nothing asks for */
+    /** @type {number[]} seconds of presses of a panel without a note */
     this.wrong = [];
     /** @type {Map<number, {row: number, limb: number, measure: number}>} the solver's row and foot of each note */
     this.stepOf = new Map(chart.rows.flatMap((row) => row.steps.map(({ note, limb }) => [note, { row: row.row, limb, measure: Math.floor(row.beat / 4 + 1e-6) }])));
     this.next = 0; // first row that may still be missed
-    this.from = -Infinity; // rows before it are not asked for
-    this.slowest = Infinity; // the slowest rate since the first row after it
+    this.from = -Infinity; // rows before this second are not judged
+    this.slowest = Infinity; // the slowest rate since the first judged row
     /** @type {number} the foot that is practised, 0 left or 1 right; -1: both */
     this.foot = -1;
-    /** @type {import("./record.js").Outcome[]} what came of notes since it was taken last */
+    /** @type {import("./record.js").Outcome[]} results of notes since the last `takeOutcomes` */
     this.outcomes = [];
-    this.slips = 0; // wrong presses since then
-    /** @type {number | undefined} seconds that the last press that took a note was late; none where the clock waits */
+    this.slips = 0; // wrong presses since the last `takeOutcomes`
+    /** @type {number | undefined} how late the last press of a note was, seconds; undefined while the clock waits for rows */
     this.lastError = undefined;
   }
 
-  /** Whether a note is asked for: the other foot's are not when one foot is practised. @param {number} note */
+  /** Whether a note is judged: while one foot is practised, the other foot's notes are not. @param {number} note */
   asks(note) {
     return this.foot < 0 || this.limbOf(note) === this.foot;
   }
 
-  /** Who steps a note. @param {number} note */
+  /** The limb that steps a note, -1 if unknown. @param {number} note */
   limbOf(note) {
     return this.chart.given.get(note) ?? this.stepOf.get(note)?.limb ?? -1;
   }
 
-  /** What came of notes since the last time. */
-  take() {
+  /** Return the results of notes and the number of wrong presses since the last call. */
+  takeOutcomes() {
     const out = { outcomes: this.outcomes, wrong: this.slips };
     [this.outcomes, this.slips] = [[], 0];
     return out;
   }
 
-  /** @param {number} note @param {Verdict} verdict @param {number} [error] seconds */
+  /** Set the verdict of a note. @param {number} note @param {Verdict} verdict @param {number} [error] seconds */
   settle(note, verdict, error) {
     this.verdicts.set(note, verdict);
     if (error !== undefined) this.errors.set(note, error);
@@ -57,7 +57,7 @@ export class Judge {
     this.outcomes.push({ row, measure, limb: this.limbOf(note), verdict, error });
   }
 
-  /** Begin at a second: notes from there on are open again. @param {number} second */
+  /** Judge again from a second on: the verdicts of its notes and of later ones are deleted. @param {number} second */
   restart(second) {
     this.from = second - 1e-3;
     this.next = 0;
@@ -72,27 +72,27 @@ export class Judge {
     }
   }
 
-  /** The music goes at a rate; slow practice before the first row that is asked for does not count. @param {number} second @param {number} rate */
-  noteRate(second, rate) {
+  /** Note the rate of the music for `slowest`, unless it is before the first judged row. @param {number} second @param {number} rate */
+  countRate(second, rate) {
     const first = this.chart.rowSeconds.find((one) => one >= this.from) ?? Infinity;
     if (second >= first - WINDOW * rate) this.slowest = Math.min(this.slowest, rate);
   }
 
   /**
-   * A panel is pressed at a second of the music; what it counts as, null if it is neither here nor there.
-   * @param {number} column @param {number} second @param {number} rate @param {boolean} [patient] the clock waits
+   * Judge the press of a panel at a second of the music. Returns null if the press does not count.
+   * @param {number} column @param {number} second @param {number} rate @param {boolean} [patient] whether the clock waits for rows
    * @returns {Verdict | "wrong" | null}
    */
   press(column, second, rate, patient = false) {
     let best = -1;
-    const reach = patient ? SAME : WINDOW * rate; // who waits for a row asks for its panels only
+    const reach = patient ? SAME : WINDOW * rate; // while the clock waits for a row, only its own panels count
     let least = reach;
     for (const n of this.chart.presses[column] ?? []) {
       const away = Math.abs(this.chart.second[n] - second);
       if (this.chart.second[n] > second + least) break;
       if (away <= least && !this.verdicts.has(n) && this.asks(n) && this.chart.second[n] >= this.from) [best, least] = [n, away];
     }
-    if (best < 0) return this.stray(column, second, reach);
+    if (best < 0) return this.pressWithoutNote(column, second, reach);
     const error = (second - this.chart.second[best]) / rate;
     const verdict = patient || Math.abs(error) <= GOOD ? "hit" : error < 0 ? "early" : "late";
     this.lastError = patient ? undefined : error;
@@ -102,10 +102,10 @@ export class Judge {
   }
 
   /**
-   * A press that takes no note: wrong, but for a panel pressed again, or that is held down just now.
-   * @param {number} column @param {number} second @param {number} wide seconds around a note in which its panel is asked for
+   * Judge a press without an open note: it is wrong, unless the panel has a judged note or a hold at this time.
+   * @param {number} column @param {number} second @param {number} wide seconds around a note in which a press of its panel is not wrong
    */
-  stray(column, second, wide) {
+  pressWithoutNote(column, second, wide) {
     const { second: starts, end: ends } = this.chart;
     const asked = (this.chart.presses[column] ?? []).some((n) => starts[n] - wide <= second && second <= ends[n] + wide);
     if (asked || second < this.from - wide) return null;
@@ -115,12 +115,12 @@ export class Judge {
   }
 
   /**
-   * Rows that are over become misses.
-   * @param {number} second @param {number} rate @param {number} [end] of the loop: rows from there on are not asked for
-   * @returns {number} how many notes were missed now
+   * Count the notes that can no longer be hit as misses.
+   * @param {number} second @param {number} rate @param {number} [end] of the loop: later rows are not judged
+   * @returns {number} number of new misses
    */
   advance(second, rate, end = Infinity) {
-    this.noteRate(Math.min(second, end), rate);
+    this.countRate(Math.min(second, end), rate);
     let missed = 0;
     while (this.next < this.chart.rows.length && this.chart.rowSeconds[this.next] < Math.min(second - WINDOW * rate, end - 1e-3)) {
       for (const step of this.chart.rows[this.next].steps) {
@@ -134,10 +134,10 @@ export class Judge {
   }
 
   /**
-   * The first row from a second on that has a panel not pressed yet, and its second.
+   * Return the first row from a second on with a note that has no verdict yet; null if there is none.
    * @param {number} second @returns {import("./chart.js").Row | null}
    */
-  open(second) {
+  nextOpenRow(second) {
     for (let k = 0; k < this.chart.rows.length; ++k) {
       if (this.chart.rowSeconds[k] < Math.max(second, this.from) - 1e-3) continue;
       if (this.chart.rows[k].steps.some((step) => !this.verdicts.has(step.note) && this.asks(step.note))) return this.chart.rows[k];
@@ -146,7 +146,7 @@ export class Judge {
   }
 
   /**
-   * What happened between two seconds of the music.
+   * Count the verdicts between two seconds of the music.
    * @param {number} from @param {number} to @returns {Tally}
    */
   tally(from, to) {
@@ -165,8 +165,8 @@ export class Judge {
 }
 
 /**
- * The speed of the next pass of a loop: quicker after a clean one, a step back after misses and wrong presses.
- * @param {number} rate @param {number} misses @param {boolean} played whether anybody played along
+ * Return the speed of the next pass of a loop: faster after a clean pass, slower after misses and wrong presses.
+ * @param {number} rate @param {number} misses @param {boolean} played whether the user played along
  */
 export function ramp(rate, misses, played) {
   const step = played && misses > 0 ? -0.05 : 0.05;

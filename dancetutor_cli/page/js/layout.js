@@ -82,7 +82,7 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
     message.classList.toggle("quiet", quiet(app));
     const lasts = app.transport.loop !== null || app.practice.wait; // on a phone that has a place of its own; what passes lies on the picture
     message.classList.toggle("lasts", lasts);
-    message.classList.toggle("brief", !lasts && (app.notice !== "" || app.practice.stray === "now" || app.practice.over !== null));
+    message.classList.toggle("brief", !lasts && (app.notice !== "" || app.practice.unknownKey === "now" || app.practice.over !== null));
     message.classList.toggle("shown", app.practice.along && app.practice.over !== null && !app.notice); // the card shows it
     count.textContent = countOf(app);
     const now = passedOf(app);

@@ -46,7 +46,7 @@ async function main() {
   takeDrops(loadFile);
   for (const name of ["gamepadconnected", "gamepaddisconnected"]) window.addEventListener(name, () => app.tell("pads"));
   window.addEventListener("resize", () => { app.fresh = true; });
-  window.addEventListener("pagehide", () => app.practice.keep());
+  window.addEventListener("pagehide", () => app.practice.recordOutcomes());
   window.addEventListener("hashchange", () => readLink(app, location.hash));
   if (location.hash) readLink(app, location.hash);
   else app.rewind();

@@ -1,11 +1,11 @@
-// Practising: who plays along, what was hit, rows that are waited for, passes of a loop, the ramp, help that fades.
+// Playing along: verdicts of presses, waiting for rows, passes of a loop, the ramp of the speed, help that becomes less.
 
 import { Coach } from "./coach.js";
 import { Judge, ramp } from "./judge.js";
 import { addClean, addOutcomes, addPlay, dayOf, scoreShare, whereOf } from "./record.js";
 import { FEET, HELPS, saveNotes } from "./settings.js";
 
-const STRAY = 5000; // milliseconds for which the keys are shown
+const KEYS_SHOWN = 5000; // milliseconds for which the keys are shown after a key that is no panel
 export const SHOWN = 400; // milliseconds in which a verdict above the receptors fades
 const LOST = 10; // notes missed in a row after which something easier is offered
 const MARKS = 24; // presses on the scale of errors
@@ -20,24 +20,24 @@ export class Practice {
     this.app = app;
     this.judge = new Judge(app.chart);
     this.coach = new Coach(app, this);
-    this.along = false; // somebody plays along
-    this.wait = false; // the clock stops at each row until it is pressed
+    this.along = false; // whether the user plays along
+    this.wait = false; // whether the clock stops at each row until it is pressed
     this.passes = 0;
-    this.helpNow = 0; // place in HELPS that "auto" has come to
-    this.chosenRate = 1; // the speed that was asked for; the ramp only goes on from it
-    /** @type {import("./judge.js").Tally | null} of the pass before */
+    this.helpNow = 0; // index in HELPS of the present help, while the setting is "auto"
+    this.chosenRate = 1; // the speed that the user chose, from which the ramp begins
+    /** @type {import("./judge.js").Tally | null} the tally of the pass before */
     this.before = null;
     /** @type {number[]} scores of the passes of this loop, 0..1 */
     this.scores = [];
-    this.rateBefore = 0; // the speed before the ramp or the coach changed it last; 0: they have not
+    this.rateBefore = 0; // the speed before the last change by the ramp or the coach; 0 if they changed nothing
     /** @type {number[]} how late the last presses were, seconds */
     this.errors = [];
-    /** @type {import("./judge.js").Tally | null} of a song that has come to its end */
+    /** @type {import("./judge.js").Tally | null} the tally of a song that has ended */
     this.over = null;
-    /** @type {"" | "now" | "shown"} whether a key was pressed that is no panel: once, the keys are shown then */
-    this.stray = "";
-    this.strayAt = 0; // milliseconds
-    this.idleNotice = ""; // the notice of a press that nothing judged
+    /** @type {"" | "now" | "shown"} whether the keys are or were shown because a key that is no panel was pressed */
+    this.unknownKey = "";
+    this.unknownKeyAt = 0; // milliseconds
+    this.idleNotice = ""; // the notice that a press was not judged
     /** @type {Feedback | null} */
     this.feedback = null;
     this.run = 0; // notes in a row without a miss or a wrong press
@@ -46,18 +46,18 @@ export class Practice {
     this.topBefore = 0; // % of the best play before this one
   }
 
-  /** Whether it is too hard as it is: something easier is offered. */
+  /** Whether so many notes were missed in a row that the page offers something easier. */
   get struggles() {
     return this.lost >= LOST && !this.wait && !this.coach.on && this.app.transport.playing;
   }
 
-  /** What was hit in the loop, or in all, since rows are asked for. */
+  /** Count the verdicts in the loop, or in the whole song, from the first judged row on. */
   tally() {
     const { loop } = this.app.transport;
     return this.judge.tally(Math.max(loop ? loop.a : -Infinity, this.judge.from), loop ? loop.b : Infinity);
   }
 
-  /** The speed is the one that was asked for again: the ramp, or its loop, is over. */
+  /** End the ramp: go back to the speed that the user chose. */
   endRamp() {
     const { transport } = this.app;
     this.passes = 0;
@@ -70,7 +70,7 @@ export class Practice {
     this.app.tell("rate");
   }
 
-  /** A pass of the loop is over. */
+  /** Evaluate a pass of the loop that has just ended. */
   pass() {
     const { transport, settings } = this.app;
     const { loop } = transport;
@@ -79,12 +79,12 @@ export class Practice {
     this.before = this.along ? this.tally() : null;
     const slips = this.before ? this.before.miss + this.before.wrong : 0;
     ++this.passes;
-    // Begun in its middle, or nobody plays: nothing is to be learnt of it.
+    // A pass that was begun in its middle, or in which nothing was pressed, does not count.
     const idle = this.before !== null && (this.judge.from > loop.a || (!this.wait && isIdle(this.before)));
     if (this.before && !idle) this.scores.push(scoreShare(this.before));
     if (this.before && !this.wait) {
-      if (!idle) this.keepPart(loop, this.before);
-      this.keep();
+      if (!idle) this.recordPart(loop, this.before);
+      this.recordOutcomes();
     }
     if (!idle) this.rateBefore = transport.rate;
     if (this.coach.on && this.before && !this.wait) {
@@ -98,8 +98,8 @@ export class Practice {
     this.updateHold();
   }
 
-  /** How a part of the song went, if both feet played it. @param {{a: number, b: number}} part seconds @param {import("./judge.js").Tally} tally */
-  keepPart({ a, b }, tally) {
+  /** Record the result of a part of the song, if both feet were played. @param {{a: number, b: number}} part seconds @param {import("./judge.js").Tally} tally */
+  recordPart({ a, b }, tally) {
     const { chart, record } = this.app;
     const { foot, slowest } = this.judge;
     if (foot >= 0) return;
@@ -108,17 +108,17 @@ export class Practice {
     addPlay(record, where, scoreShare(tally), slowest);
   }
 
-  /** What came of notes goes into the record; while the clock waits, or nobody presses anything, there is nothing to keep. */
-  keep() {
-    const { outcomes, wrong } = this.judge.take();
+  /** Record the results of notes, unless the clock waited for rows or nothing was pressed. */
+  recordOutcomes() {
+    const { outcomes, wrong } = this.judge.takeOutcomes();
     if (this.wait || (!wrong && outcomes.every(({ verdict }) => verdict === "miss"))) return;
     addOutcomes(this.app.record, dayOf(new Date()), outcomes, wrong, this.judge.slowest);
     this.app.saveRecord();
   }
 
-  /** One foot is practised, the other one is played for you; or both are. @param {string} foot of FEET */
+  /** Choose whether one foot is practised or both; the page plays the other one. @param {string} foot of FEET */
   setFoot(foot) {
-    this.keep();
+    this.recordOutcomes();
     this.app.notes.foot = foot;
     this.judge.foot = FEET.indexOf(foot) - 1;
     saveNotes(this.app.id, this.app.notes);
@@ -128,14 +128,14 @@ export class Practice {
     this.app.tell("along");
   }
 
-  /** Play along, or only watch. @param {boolean} on */
+  /** Begin or stop to play along. @param {boolean} on */
   setAlong(on) {
-    this.keep();
+    this.recordOutcomes();
     if (!on) this.coach.on = false;
     if (on && this.saysIdle) this.app.notice = "";
     this.along = on;
     this.before = null;
-    this.stray = "";
+    this.unknownKey = "";
     this.feedback = null;
     this.errors = [];
     if (!on) this.wait = false;
@@ -146,9 +146,9 @@ export class Practice {
     this.app.tell("along");
   }
 
-  /** What was pressed while the clock waited is not in time: rows are asked for anew on both ways. @param {boolean} on */
+  /** Let the clock wait for rows, or not; judge again, because presses while it waits are not in time. @param {boolean} on */
   setWait(on) {
-    this.keep();
+    this.recordOutcomes();
     if (on && !this.along) this.setAlong(true);
     this.wait = on;
     this.lost = 0;
@@ -157,35 +157,35 @@ export class Practice {
     this.app.tell("along");
   }
 
-  /** Rows from a second on are asked for anew, in a loop not those before it. @param {number} second */
+  /** Judge again from a second on, in a loop from its beginning at the earliest. @param {number} second */
   restart(second) {
     const { loop } = this.app.transport;
     this.over = null;
     this.run = 0;
     this.feedback = null;
     if (!loop) [this.longest, this.errors] = [0, []];
-    this.keep();
+    this.recordOutcomes();
     this.judge.restart(loop && second < loop.b ? Math.max(second, loop.a) : second);
     this.app.tell("hits");
   }
 
-  /** While the clock waits for rows it does not pass the first one that is not pressed. */
+  /** While the clock waits for rows, stop it at the first row that is not pressed. */
   updateHold() {
     const { transport } = this.app;
-    const row = this.wait ? this.judge.open(-Infinity) : null;
-    const { loop } = transport; // beyond its end nothing is waited for: it begins anew
+    const row = this.wait ? this.judge.nextOpenRow(-Infinity) : null;
+    const { loop } = transport; // the clock waits for no row after the end of a loop, because the loop repeats
     transport.holdAt(row && !(loop && row.second >= loop.b) ? row.second : Infinity);
   }
 
-  /** A panel is pressed, some seconds ago. @param {number} column @param {number} ago */
+  /** Judge the press of a panel. @param {number} column @param {number} ago seconds since the press */
   press(column, ago) {
     if (!this.along) return;
     const { transport, sound, settings } = this.app;
     const { rate } = transport;
     if (!transport.playing) return this.idle();
-    if (this.stray === "now") this.stray = "shown";
+    if (this.unknownKey === "now") this.unknownKey = "shown";
     if (this.wait) {
-      const row = this.judge.open(-Infinity);
+      const row = this.judge.nextOpenRow(-Infinity);
       if (!row || row.second - transport.second() > EARLY * rate) return;
       this.show(this.judge.press(column, row.second, rate, true), column);
       this.updateHold();
@@ -195,7 +195,7 @@ export class Practice {
     this.app.tell("hits");
   }
 
-  /** Rows that are over by the second that is seen are missed. @param {number} second */
+  /** Count misses up to the second that is seen. @param {number} second */
   advance(second) {
     const { transport, settings } = this.app;
     if (!transport.playing || !this.along || this.wait) return;
@@ -206,7 +206,7 @@ export class Practice {
     this.app.tell("hits");
   }
 
-  /** A verdict is shown for a moment. @param {string | null} verdict null: neither here nor there @param {number} column */
+  /** Show a verdict for a moment. @param {string | null} verdict null: the press does not count @param {number} column */
   show(verdict, column) {
     if (!verdict) return;
     this.run = verdict === "miss" || verdict === "wrong" ? 0 : this.run + 1;
@@ -217,43 +217,43 @@ export class Practice {
     this.feedback = { verdict, column, at: performance.now(), run: this.run, error };
   }
 
-  /** The verdict that is shown now; what is no longer is forgotten. */
+  /** Return the verdict that is shown now; delete it after `SHOWN` milliseconds. */
   shown() {
     if (this.feedback && performance.now() - this.feedback.at > SHOWN) this.feedback = null;
     return this.feedback;
   }
 
-  /** A panel was pressed that nothing judges, for nobody plays along or nothing plays: a notice says so. */
+  /** Show a notice that a press is not judged, because the user does not play along or the song is paused. */
   idle() {
     const { t, input: { keyless } } = this.app;
     this.app.notice = this.along ? t("paused", { keys: keyless ? "▶" : `▶ (${t("space")})` }) : t("padIdle", { key: keyless ? "" : " (p)" });
     this.idleNotice = this.app.notice;
-    this.strayAt = performance.now();
+    this.unknownKeyAt = performance.now();
     this.app.tell("along");
   }
 
-  /** Whether that notice is shown now. */
+  /** Whether the notice of `idle` is shown now. */
   get saysIdle() {
     return this.idleNotice !== "" && this.app.notice === this.idleNotice;
   }
 
-  /** A key was pressed that is no panel. */
-  strayKey() {
-    if (this.stray) return;
-    this.stray = "now";
-    this.strayAt = performance.now();
+  /** Show the keys of the panels, because a key was pressed that is no panel; only the first time. */
+  showKeys() {
+    if (this.unknownKey) return;
+    this.unknownKey = "now";
+    this.unknownKeyAt = performance.now();
     this.app.tell("along");
   }
 
-  /** The keys, or that nothing is judged, have been shown for long enough. */
+  /** Hide the keys of the panels, or the notice of `idle`, after `KEYS_SHOWN` milliseconds. */
   fade() {
-    if ((this.stray !== "now" && !this.saysIdle) || performance.now() - this.strayAt < STRAY) return;
+    if ((this.unknownKey !== "now" && !this.saysIdle) || performance.now() - this.unknownKeyAt < KEYS_SHOWN) return;
     if (this.saysIdle) this.app.notice = "";
-    else this.stray = "shown";
+    else this.unknownKey = "shown";
     this.app.tell("along");
   }
 
-  /** The song is over: how it went is shown until somebody goes on. */
+  /** Evaluate the song at its end; the result is shown until the user goes on. */
   finish() {
     if (!this.along) return this.app.rewind();
     this.judge.advance(Infinity, this.app.transport.rate);
@@ -264,9 +264,9 @@ export class Practice {
     if (whole && this.judge.slowest >= 1) this.app.record.top = Math.max(this.topBefore, Math.round(100 * scoreShare(this.over)));
     for (const { start, end } of this.wait ? [] : this.app.doc.passages) {
       const tally = this.judge.tally(start, end);
-      if (this.judge.from <= start + 1e-3 && !isIdle(tally)) this.keepPart({ a: start, b: end }, tally);
+      if (this.judge.from <= start + 1e-3 && !isIdle(tally)) this.recordPart({ a: start, b: end }, tally);
     }
-    this.keep();
+    this.recordOutcomes();
     this.app.tell("hits");
   }
 
@@ -275,11 +275,11 @@ export class Practice {
     return this.app.settings.help === "auto" ? HELPS[this.helpNow] : this.app.settings.help;
   }
 
-  /** Whether the foot of a note is told. @param {import("./chart.js").Row | undefined} row */
+  /** Whether the foot of a row is shown. @param {import("./chart.js").Row | undefined} row */
   tells(row) {
     return this.help === "all" || (this.help === "tricky" && Boolean(row?.tricky));
   }
 }
 
-/** Whether nobody pressed anything. @param {import("./judge.js").Tally} tally */
+/** Whether nothing was pressed. @param {import("./judge.js").Tally} tally */
 const isIdle = ({ hit, early, late, wrong }) => hit + early + late + wrong === 0;

@@ -37,7 +37,7 @@ export function recordPart(app) {
   const message = el("p", { class: "hint", role: "status", id: "record-message" });
   const load = el("button", { type: "button", onclick: () => file.click() }, t("recordLoad"));
   const save = el("button", { type: "button", id: "record-save", onclick: () => {
-    practice.keep();
+    practice.recordOutcomes();
     download("dancetutor-practice.json", toFile({ ...allRecords(), [app.id]: app.record }));
     message.textContent = t("recordSaved", { name: "dancetutor-practice.json" });
   } }, t("recordSave"));
@@ -54,7 +54,7 @@ async function takeFile(app, file) {
   if (file.size > LARGEST) return app.t("recordLarge", { name: file.name.slice(0, 60), most: LARGEST / 1e6 });
   const records = fromFile(await file.text());
   if (!records) return app.t("recordBad", { name: file.name.slice(0, 60) });
-  app.practice.keep();
+  app.practice.recordOutcomes();
   saveRecord(app.id, app.record);
   takeRecords(records);
   if (records.has(app.id)) app.record = loadRecord(app.id);

@@ -10,7 +10,7 @@ export const KINDS = /** @type {const} */ (["hit", "early", "late", "miss", "wro
 export function statusText(app) {
   const { t, transport, practice, sound } = app;
   if (app.notice) return app.notice;
-  if (practice.stray === "now") return keysText(app);
+  if (practice.unknownKey === "now") return keysText(app);
   if (transport.waiting) return t("waiting");
   const over = practice.along && practice.over ? overText(app, practice.over) : "";
   const parts = [over, practice.coach.on && practice.along ? practice.coach.message : "", loopText(app)].filter(Boolean).join(" · ");

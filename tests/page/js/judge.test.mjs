@@ -76,13 +76,13 @@ test("a panel that nothing asks for is wrong; one pressed again, held, or before
 test("a row that waits is open until all its panels are pressed", () => {
   const judge = new Judge(chart());
   judge.restart(1.5);
-  assert.equal(judge.open(-Infinity).second, 2);
+  assert.equal(judge.nextOpenRow(-Infinity).second, 2);
   judge.press(3, 2, 1, true);
-  assert.equal(judge.open(-Infinity).second, 2);
+  assert.equal(judge.nextOpenRow(-Infinity).second, 2);
   judge.press(0, 2, 1, true);
-  assert.equal(judge.open(-Infinity).second, 3);
+  assert.equal(judge.nextOpenRow(-Infinity).second, 3);
   judge.press(1, 3, 1, true);
-  assert.equal(judge.open(-Infinity), null);
+  assert.equal(judge.nextOpenRow(-Infinity), null);
 });
 
 test("while the clock waits for a row, the panel of the next one is wrong, however near it is", () => {
@@ -232,11 +232,11 @@ test("of one foot the other's notes are neither asked for, missed nor wrong", ()
   assert.equal(judge.press(0, 2.0, 1), null); // the right foot's: played for you
   assert.equal(judge.press(3, 2.0, 1), "hit");
   assert.equal(judge.advance(9, 1), 0);
-  assert.equal(judge.open(0), null);
-  const { outcomes, wrong } = judge.take();
+  assert.equal(judge.nextOpenRow(0), null);
+  const { outcomes, wrong } = judge.takeOutcomes();
   assert.deepEqual(outcomes.map(({ row, limb, verdict }) => [row, limb, verdict]), [[0, 0, "hit"], [1, 0, "hit"]]);
   assert.equal(wrong, 0);
-  assert.deepEqual(judge.take(), { outcomes: [], wrong: 0 });
+  assert.deepEqual(judge.takeOutcomes(), { outcomes: [], wrong: 0 });
   judge.chart.given.set(3, 0); // the author gave the last note to the left foot
   judge.restart(0);
   assert.equal(judge.press(1, 3.0, 1), "hit");

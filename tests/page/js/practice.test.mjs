@@ -262,10 +262,10 @@ test("the first key that is no panel has the keys said, until a panel is pressed
   const { app } = make();
   app.input = new Input(["left", "down", "up", "right"], { keys: {}, pads: {} });
   app.practice.setAlong(true);
-  app.practice.strayKey();
+  app.practice.showKeys();
   assert.equal(statusText(app), "keysOrArrows D F J K ← ↓ ↑ →");
   app.practice.press(0, 0);
-  app.practice.strayKey();
+  app.practice.showKeys();
   assert.doesNotMatch(statusText(app), /keys/);
   assert.equal(new Input(["a", "b", "c", "d", "e"], { keys: {}, pads: {} }).columnOf("ArrowLeft"), -1); // Pump keeps its keys
   assert.deepEqual(["ArrowLeft", "ArrowDown", "ArrowUp", "ArrowRight", "KeyK"].map((code) => app.input.columnOf(code)), [0, 1, 2, 3, 3]);
