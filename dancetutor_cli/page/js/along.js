@@ -47,7 +47,10 @@ export function alongPanel(app) {
       ...t("padHint").split("\n").map((line) => el("p", {}, line))));
 }
 
-/** Press a key or button for each panel in turn; whoever stops before the last one keeps what there was. @param {import("./app.js").App} app @param {() => void} done */
+/**
+ * Press a key or button for each panel in turn; whoever stops before the last one keeps what there was.
+ * @param {import("./app.js").App} app @param {() => void} done
+ */
 function assignDialog(app, done) {
   const { t, settings } = app;
   const before = structuredClone({ keys: settings.keys, pads: settings.pads, controls: settings.controls });
@@ -59,7 +62,10 @@ function assignDialog(app, done) {
   const panels = app.doc.pad.names;
   let column = 0;
   const ask = () => {
-    text.textContent = column < panels.length ? t("pressFor", { panel: panelName(app.t, panels[column]) }) : t(`pressControl-${CONTROLS[column - panels.length]}`);
+    text.textContent =
+      column < panels.length
+        ? t("pressFor", { panel: panelName(app.t, panels[column]) })
+        : t(`pressControl-${CONTROLS[column - panels.length]}`);
   };
   const end = () => {
     all = true;

@@ -40,7 +40,9 @@ export class App {
     this.transport.onPass = () => this.practice.pass();
     this.transport.onEnd = () => this.practice.finish();
     this.sound.clicks = clicksOf(this.chart, () => ({
-      claps: this.claps, metronome: this.settings.metronome, played: (row) => this.practice.along && row.steps.some(({ note }) => !this.practice.judge.asks(note)),
+      claps: this.claps,
+      metronome: this.settings.metronome,
+      played: (row) => this.practice.along && row.steps.some(({ note }) => !this.practice.judge.asks(note)),
     }));
     this.input = new Input(doc.pad.names, this.settings, doc.pad.directions);
     this.input.onControl = (name) => (name === "start" ? void this.padStart() : this.toStart());
@@ -113,7 +115,11 @@ export class App {
     this.fresh = true;
   }
 
-  /** Change a setting. @template {keyof import("./settings.js").Settings} K @param {K} name @param {import("./settings.js").Settings[K]} value */
+  /**
+   * Change a setting.
+   * @template {keyof import("./settings.js").Settings} K @param {K} name
+   * @param {import("./settings.js").Settings[K]} value
+   */
   set(name, value) {
     this.settings[name] = value;
     if (name === "countIn") this.transport.countIn = Boolean(value);
@@ -132,17 +138,22 @@ export class App {
     this.tell("settings");
   }
 
-  /** Return the second of the music that is seen now: sound is heard later than it is scheduled, and a screen may be late. */
+  /**
+   * Return the second of the music that is seen now: sound is heard later than it is scheduled, and a screen may be
+   * late.
+   */
   second() {
     const { transport, sound } = this;
-    const heard = transport.second() - (transport.playing && !transport.waiting ? (sound.latency - this.settings.sight) * transport.rate : 0);
+    const heard =
+      transport.second() - (transport.playing && !transport.waiting ? (sound.latency - this.settings.sight) * transport.rate : 0);
     return Math.max(heard, this.start);
   }
 
   async play() {
     if (this.transport.playing) return this.transport.pause();
     const { at } = this.transport;
-    if (!this.played && !this.transport.loop && at > this.opening && at < this.chart.first) this.transport.seek(this.opening); // time to get ready
+    // Time to get ready.
+    if (!this.played && !this.transport.loop && at > this.opening && at < this.chart.first) this.transport.seek(this.opening);
     this.played = true;
     this.notice = "";
     await this.sound.start();
@@ -335,7 +346,9 @@ export class App {
     return this.settings.camera === "front" && !this.practice.along;
   }
 
-  /** Return the row whose feet are shown as soles on the pad: while the picture stands still, the next one; else null. */
+  /**
+   * Return the row whose feet are shown as soles on the pad: while the picture stands still, the next one; else null.
+   */
   nextRow() {
     const { transport, chart } = this;
     if (transport.playing && !transport.waiting) return null;
@@ -360,7 +373,10 @@ export class App {
     this.tell("findings");
   }
 
-  /** Advance the practice, and draw one picture if anything has changed. @param {import("./timeline.js").Timeline} timeline */
+  /**
+   * Advance the practice, and draw one picture if anything has changed.
+   * @param {import("./timeline.js").Timeline} timeline
+   */
   frame(timeline) {
     const { transport, sound } = this;
     this.input.poll();
@@ -386,12 +402,21 @@ export class App {
   highwayScene(second) {
     const { practice } = this;
     return {
-      second, speed: this.pace * this.settings.speed, mirror: this.mirrored, marked: (_, row) => practice.tells(row), verdicts: practice.along ? practice.judge.verdicts : new Map(),
+      second,
+      speed: this.pace * this.settings.speed,
+      mirror: this.mirrored,
+      marked: (_, row) => practice.tells(row),
+      verdicts: practice.along ? practice.judge.verdicts : new Map(),
       asked: (n) => !practice.along || practice.judge.asks(n),
-      loop: this.transport.loop, feet: this.redance.limbs, chosen: this.chosen,
-      along: practice.along, errors: practice.along ? practice.errors : [],
-      keys: practice.along ? this.input.names().map(([name]) => name) : [], held: practice.along ? this.input.held : [],
-      feedback: practice.along ? practice.shown() : null, passed: window.innerWidth > NARROW ? passedOf(this) : "", // a phone has a line for it
+      loop: this.transport.loop,
+      feet: this.redance.limbs,
+      chosen: this.chosen,
+      along: practice.along,
+      errors: practice.along ? practice.errors : [],
+      keys: practice.along ? this.input.names().map(([name]) => name) : [],
+      held: practice.along ? this.input.held : [],
+      feedback: practice.along ? practice.shown() : null,
+      passed: window.innerWidth > NARROW ? passedOf(this) : "", // a phone has a line for it
     };
   }
 }

@@ -52,7 +52,10 @@ export function authorPanel(app) {
   return el("div", {}, el("p", { class: "hint" }, t("authorHint")), about, el("p", { class: "group" }, give), list, take);
 }
 
-/** A note in words: where it is, its panel and who steps it. @param {import("./app.js").App} app @param {number} note */
+/**
+ * A note in words: where it is, its panel and who steps it.
+ * @param {import("./app.js").App} app @param {number} note
+ */
 export function noteText(app, note) {
   const row = app.redance.rowOf.get(note);
   const step = row?.steps.find((one) => one.note === note);
@@ -88,7 +91,10 @@ function costText(app, row, given) {
   return app.t(`${given ? "given" : "cost"}${name}`, { word, extra: flip.extra, rows: rows - 1 });
 }
 
-/** What an ordinary row of the chart costs: the middle one of those that cost anything. @param {import("./app.js").App} app */
+/**
+ * What an ordinary row of the chart costs: the middle one of those that cost anything.
+ * @param {import("./app.js").App} app
+ */
 function ordinary(app) {
   const costs = app.chart.rows.map((row) => row.cost).filter((cost) => cost > 0).sort((a, b) => a - b);
   return Math.max(1, costs[costs.length >> 1] ?? 1);
@@ -115,7 +121,10 @@ function yamlOf(app) {
   return `${lines.join("\n")}\n`;
 }
 
-/** A pinned comment for each measure with a change: it goes onto the line that opens the measure. @param {import("./app.js").App} app */
+/**
+ * A pinned comment for each measure with a change: it goes onto the line that opens the measure.
+ * @param {import("./app.js").App} app
+ */
 function commentsOf(app) {
   const measures = [...new Set(app.redance.changedRows().map((row) => Math.floor(row.beat / 4 + 1e-6)))];
   return measures.map((measure) => {
@@ -128,11 +137,16 @@ const LIMBS = ["left_foot", "right_foot", "left_hand", "right_hand"];
 const PARTS = [null, "heel", "toe"];
 const KINDS = ["", "tap", "lift", "hold", "roll", "roll_tap"];
 
-/** The play in the JSON of `analyze`, for --play: the author's feet, and what the solver would step then. @param {import("./app.js").App} app */
+/**
+ * The play in the JSON of `analyze`, for --play: the author's feet, and what the solver would step then.
+ * @param {import("./app.js").App} app
+ */
 function playOf(app) {
   const { doc, arrays, redance } = app;
   const columns = app.chart.columns;
-  const [steps, limbs, parts, ticks, seconds, facing] = ["steps", "limb", "part", "tick", "second", "facing"].map((name) => arrays.get(`row.${name}`));
+  const [steps, limbs, parts, ticks, seconds, facing] = ["steps", "limb", "part", "tick", "second", "facing"].map((name) =>
+    arrays.get(`row.${name}`),
+  );
   /** @type {(number | null)[]} */
   const stands = [null, null];
   const rows = [];
@@ -153,8 +167,19 @@ function playOf(app) {
       feet: { left: stands[0], right: stands[1] }, facing: round6(facing[row]), moves: own ? own.moves : [],
     });
   }
-  const chart = { index: Number(doc.words.index), steps_type: doc.words.steps, difficulty: doc.words.difficulty, meter: Number(doc.words.meter), rows };
-  return JSON.stringify({ schema: 1, tool: "dancetutor page", preset: doc.words.preset, files: [{ path: doc.words.file, charts: [chart] }] });
+  const chart = {
+    index: Number(doc.words.index),
+    steps_type: doc.words.steps,
+    difficulty: doc.words.difficulty,
+    meter: Number(doc.words.meter),
+    rows,
+  };
+  return JSON.stringify({
+    schema: 1,
+    tool: "dancetutor page",
+    preset: doc.words.preset,
+    files: [{ path: doc.words.file, charts: [chart] }],
+  });
 }
 
 /** @param {number} x */

@@ -35,17 +35,36 @@ export function calibrateDialog(app) {
   const light = el("div", { class: "light", "aria-hidden": "true" });
   const scale = el("div", { class: "scale", role: "img", "aria-label": t("calibrateScale") });
   const tap = el("button", { type: "button", class: "tap", disabled: true }, t("calibrateTap"));
-  const ends = el("p", { class: "ends", "aria-hidden": "true" }, el("span", {}, t("calibrateEarly")), el("span", {}, "0"), el("span", {}, t("calibrateLate")));
+  const ends = el(
+    "p",
+    { class: "ends", "aria-hidden": "true" },
+    el("span", {}, t("calibrateEarly")),
+    el("span", {}, "0"),
+    el("span", {}, t("calibrateLate")),
+  );
   const figures = el("p", { class: "hint" });
   const apply = el("button", { type: "button", id: "calibrate-apply", class: "main" }, t("calibrateApply"));
   const keep = el("button", { type: "button", id: "calibrate-keep" }, t("calibrateKeep"));
   const choice = el("p", { class: "group choice", hidden: true }, apply, keep);
   const ear = el("button", { type: "button", id: "by-ear", onclick: () => void begin("latency") }, t("byEar"));
   const eye = el("button", { type: "button", id: "by-eye", onclick: () => void begin("sight") }, t("byEye"));
-  const dialog = el("dialog", { class: "assign calibrate", "aria-label": t("calibrate") }, el("h2", {}, t("calibrate")), text,
-    el("p", { class: "group" }, ear, eye), light, tap, scale, ends, choice, figures,
-    el("button", { type: "button", onclick: () => dialog.close() }, t("close")));
-  const show = () => { figures.textContent = t("calibrateNow", { ear: Math.round(1000 * settings.latency), eye: Math.round(1000 * settings.sight) }); };
+  const dialog = el(
+    "dialog",
+    { class: "assign calibrate", "aria-label": t("calibrate") },
+    el("h2", {}, t("calibrate")),
+    text,
+    el("p", { class: "group" }, ear, eye),
+    light,
+    tap,
+    scale,
+    ends,
+    choice,
+    figures,
+    el("button", { type: "button", onclick: () => dialog.close() }, t("close")),
+  );
+  const show = () => {
+    figures.textContent = t("calibrateNow", { ear: Math.round(1000 * settings.latency), eye: Math.round(1000 * settings.sight) });
+  };
   /** @type {number[]} */
   let taps = [];
   /** @type {number[]} when each beat was to be heard, or was seen, seconds */

@@ -65,7 +65,9 @@ export function matrix(camera, width, height) {
 export function preset(doc, name, width, height) {
   const about = doc.look.cameras[name];
   const whole = (doc.stage.high[0] - doc.stage.low[0] + 2 * about.arms) / Math.max(about.height, doc.stage.tall); // by its height
-  const arms = about.feet_only ? about.arms : about.arms * clamp(1 - (2 * (1 - LEAST_ARMS) * (whole - width / height)) / whole, LEAST_ARMS, 1);
+  const arms = about.feet_only
+    ? about.arms
+    : about.arms * clamp(1 - (2 * (1 - LEAST_ARMS) * (whole - width / height)) / whole, LEAST_ARMS, 1);
   const box = corners(doc, { ...about, arms });
   /** @type {[number, number, number]} */
   const target = [0, 0, 0];

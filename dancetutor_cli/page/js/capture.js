@@ -54,24 +54,68 @@ async function main() {
     go: (/** @type {number} */ second) => { transport.pause(); transport.seek(second); },
     distances: () => distances.click(),
   };
-  const play = el("button", { type: "button", class: "play", "aria-label": t("playPause"), title: t("playPause"), onclick: act.play }, "▶");
-  const seek = el("input", { type: "range", class: "strip", min: start, max: end, step: FRAME, value: start, "aria-label": t("capturePosition") });
+  const play = el(
+    "button",
+    { type: "button", class: "play", "aria-label": t("playPause"), title: t("playPause"), onclick: act.play },
+    "▶",
+  );
+  const seek = el("input", {
+    type: "range",
+    class: "strip",
+    min: start,
+    max: end,
+    step: FRAME,
+    value: start,
+    "aria-label": t("capturePosition"),
+  });
   seek.addEventListener("input", () => transport.seek(Number(seek.value)));
-  const rate = el("select", { class: "rate", "aria-label": t("captureSpeed") }, ...RATES.map((one) => el("option", { value: one, selected: one === 1 }, t("captureRate", { rate: one }))));
+  const rate = el(
+    "select",
+    { class: "rate", "aria-label": t("captureSpeed") },
+    ...RATES.map((one) => el("option", { value: one, selected: one === 1 }, t("captureRate", { rate: one }))),
+  );
   rate.addEventListener("change", () => transport.setRate(Number(rate.value)));
-  const distances = toggle(t("captureDistances"), true, (on) => { view.distances = on; });
-  const cameras = SIDES.map(([label, yaw]) => el("button", { type: "button", onclick: () => { view.yaw = yaw; view.pitch = 8; view.zoom = 1; } }, t(label)));
+  const distances = toggle(t("captureDistances"), true, (on) => {
+    view.distances = on;
+  });
+  const cameras = SIDES.map(([label, yaw]) =>
+    el(
+      "button",
+      {
+        type: "button",
+        onclick: () => {
+          view.yaw = yaw;
+          view.pitch = 8;
+          view.zoom = 1;
+        },
+      },
+      t(label),
+    ),
+  );
   const sign = (/** @type {string} */ text, /** @type {string} */ label, /** @type {() => void} */ press) =>
     el("button", { type: "button", class: "sign", "aria-label": t(label), title: t(label), onclick: press }, text);
   const clock = el("output", { class: "clock" });
   const summary = el("p", { class: "caption output" });
   const rows = doc.points.map((name, k) => {
     const cell = el("td");
-    const most = el("button", { type: "button", class: "link", title: t("captureGo"), onclick: () => act.go(distance.when[k]) }, number(distance.most[k]));
-    return { cell, row: el("tr", {}, el("th", { scope: "row" }, name), cell, el("td", {}, number(distance.mean[k])), el("td", {}, most)) };
+    const most = el(
+      "button",
+      { type: "button", class: "link", title: t("captureGo"), onclick: () => act.go(distance.when[k]) },
+      number(distance.most[k]),
+    );
+    return {
+      cell,
+      row: el("tr", {}, el("th", { scope: "row" }, name), cell, el("td", {}, number(distance.mean[k])), el("td", {}, most)),
+    };
   });
   const head = ["capturePoint", "captureNow", "captureMean", "captureMost"].map((label) => el("th", { scope: "col" }, t(label)));
-  const table = el("table", {}, el("caption", {}, t("captureTable")), el("thead", {}, el("tr", {}, ...head)), el("tbody", {}, ...rows.map((one) => one.row)));
+  const table = el(
+    "table",
+    {},
+    el("caption", {}, t("captureTable")),
+    el("thead", {}, el("tr", {}, ...head)),
+    el("tbody", {}, ...rows.map((one) => one.row)),
+  );
   place.append(el("p", { class: "caption input" }, t("captureInput")), summary);
   document.getElementById("app")?.replaceChildren(
     el("header", {}, el("h1", {}, doc.words.title)),
@@ -91,7 +135,11 @@ async function main() {
     play.textContent = transport.playing ? "❚❚" : "▶";
     if (document.activeElement !== seek || transport.playing) seek.value = String(second);
     clock.textContent = t("captureClock", { second: (second - start).toFixed(2), end: (end - start).toFixed(2) });
-    summary.textContent = t("captureSaid", { point: doc.points[worst], far: number(far[worst]), mean: number(far.reduce((sum, one) => sum + one, 0) / far.length) });
+    summary.textContent = t("captureSaid", {
+      point: doc.points[worst],
+      far: number(far[worst]),
+      mean: number(far.reduce((sum, one) => sum + one, 0) / far.length),
+    });
     rows.forEach(({ cell }, k) => {
       cell.textContent = number(far[k]);
       cell.style.setProperty("--far", colourOf(far[k], doc.far));
@@ -102,7 +150,10 @@ async function main() {
   document.documentElement.dataset.ready = performance.now().toFixed(0);
 }
 
-/** Of each point its mean and largest distance in centimetres, and when that is. @param {CaptureView} view @param {Clock} clock */
+/**
+ * Of each point its mean and largest distance in centimetres, and when that is.
+ * @param {CaptureView} view @param {Clock} clock
+ */
 function farthest(view, clock) {
   const count = view.before.keys;
   const points = view.before.rows / 3;
@@ -125,11 +176,25 @@ function farthest(view, clock) {
 function listen(place, view, act) {
   document.addEventListener("keydown", (event) => {
     const target = /** @type {HTMLElement} */ (event.target);
-    if (event.ctrlKey || event.metaKey || event.altKey || /^(SELECT|INPUT)$/.test(target.tagName) || (event.key === " " && target.tagName === "BUTTON")) return;
+    if (
+      event.ctrlKey ||
+      event.metaKey ||
+      event.altKey ||
+      /^(SELECT|INPUT)$/.test(target.tagName) ||
+      (event.key === " " && target.tagName === "BUTTON")
+    )
+      return;
     const by = /** @type {Record<string, () => void>} */ ({
-      " ": act.play, ",": () => act.step(-1), ".": () => act.step(1), d: act.distances,
-      ArrowLeft: () => view.turn(-TURN, 0), ArrowRight: () => view.turn(TURN, 0), ArrowUp: () => view.turn(0, TURN), ArrowDown: () => view.turn(0, -TURN),
-      "+": () => view.nearer(ZOOM), "-": () => view.nearer(1 / ZOOM),
+      " ": act.play,
+      ",": () => act.step(-1),
+      ".": () => act.step(1),
+      d: act.distances,
+      ArrowLeft: () => view.turn(-TURN, 0),
+      ArrowRight: () => view.turn(TURN, 0),
+      ArrowUp: () => view.turn(0, TURN),
+      ArrowDown: () => view.turn(0, -TURN),
+      "+": () => view.nearer(ZOOM),
+      "-": () => view.nearer(1 / ZOOM),
     })[event.key];
     if (!by || (event.key.startsWith("Arrow") && target !== place && target !== document.body && target.tagName !== "BUTTON")) return;
     event.preventDefault();
@@ -154,11 +219,16 @@ function listen(place, view, act) {
     if (before > 0) view.nearer(span() / before);
     else view.turn(-0.4 * dx, 0.3 * dy);
   });
-  for (const name of /** @type {const} */ (["pointerup", "pointercancel"])) place.addEventListener(name, (event) => fingers.delete(event.pointerId));
-  place.addEventListener("wheel", (event) => {
-    event.preventDefault();
-    view.nearer(Math.exp(-event.deltaY / 800));
-  }, { passive: false });
+  for (const name of /** @type {const} */ (["pointerup", "pointercancel"]))
+    place.addEventListener(name, (event) => fingers.delete(event.pointerId));
+  place.addEventListener(
+    "wheel",
+    (event) => {
+      event.preventDefault();
+      view.nearer(Math.exp(-event.deltaY / 800));
+    },
+    { passive: false },
+  );
 }
 
 main().catch((error) => {

@@ -14,7 +14,10 @@ const NO_MARK = { line: [0, 0, 0, 1], ground: 0, near: -1, strength: 0, pressed:
 
 /** Places at even keys, and what they are at any second. */
 class Track {
-  /** @param {import("./blob.js").Numbers} values a row for each number, then keys @param {import("./capture.js").Clock} clock */
+  /**
+   * @param {import("./blob.js").Numbers} values a row for each number, then keys
+   * @param {import("./capture.js").Clock} clock
+   */
   constructor(values, clock) {
     this.keys = clock.keys;
     this.rows = values.length / this.keys;
@@ -42,7 +45,10 @@ class Track {
  * @param {ArrayLike<number>} a @param {ArrayLike<number>} b
  */
 export function pointDistances(a, b) {
-  return Array.from({ length: a.length / 3 }, (_, k) => 100 * Math.hypot(a[3 * k] - b[3 * k], a[3 * k + 1] - b[3 * k + 1], a[3 * k + 2] - b[3 * k + 2]));
+  return Array.from(
+    { length: a.length / 3 },
+    (_, k) => 100 * Math.hypot(a[3 * k] - b[3 * k], a[3 * k + 1] - b[3 * k + 1], a[3 * k + 2] - b[3 * k + 2]),
+  );
 }
 
 /**
@@ -84,7 +90,10 @@ export class CaptureView {
     this.viewer = null;
   }
 
-  /** Start WebGL; without it both figures are drawn as lines. @param {import("./gl.js").MeshData} mesh @param {ImageBitmap[]} skins */
+  /**
+   * Start WebGL; without it both figures are drawn as lines.
+   * @param {import("./gl.js").MeshData} mesh @param {ImageBitmap[]} skins
+   */
   start(mesh, skins) {
     try {
       this.viewer = new Viewer(this.canvas, /** @type {import("./doc.js").PageDoc} */ (/** @type {unknown} */ (this.doc)), mesh, skins);
@@ -106,10 +115,21 @@ export class CaptureView {
     this.zoom = clamp(this.zoom * times, 0.5, 4);
   }
 
-  /** Both halves: beside each other, or one above the other where it is narrow. @param {number} width @param {number} height @returns {Box[]} */
+  /**
+   * Both halves: beside each other, or one above the other where it is narrow.
+   * @param {number} width @param {number} height @returns {Box[]}
+   */
   halves(width, height) {
     const [left, top] = [Math.round(width / 2), Math.round(height / 2)];
-    return width >= 0.9 * height ? [[0, 0, left, height], [left, 0, width - left, height]] : [[0, 0, width, top], [0, top, width, height - top]];
+    return width >= 0.9 * height
+      ? [
+          [0, 0, left, height],
+          [left, 0, width - left, height],
+        ]
+      : [
+          [0, 0, width, top],
+          [0, top, width, height - top],
+        ];
   }
 
   /** @param {number} second @param {Box} box @returns {import("./camera.js").Camera} */

@@ -8,8 +8,24 @@ const STEPS = [KIND.TAP, KIND.HOLD, KIND.ROLL, KIND.LIFT];
 const ROLL_TAP = 5; // play.played.StepKind
 const TICKS = 48;
 /** Moves that a learner has to know: rows with one of them are "tricky". */
-const TRICKY = ["half-turn-away", "half-turn-back", "half-turn", "crossover-half", "crossover-full", "spin",
-  "doublestep", "jump-footswitch", "footswitch-up", "footswitch-down", "footswitch", "sideswitch-left", "sideswitch-right", "holdswitch", "bracket", "hand"];
+const TRICKY = [
+  "half-turn-away",
+  "half-turn-back",
+  "half-turn",
+  "crossover-half",
+  "crossover-full",
+  "spin",
+  "doublestep",
+  "jump-footswitch",
+  "footswitch-up",
+  "footswitch-down",
+  "footswitch",
+  "sideswitch-left",
+  "sideswitch-right",
+  "holdswitch",
+  "bracket",
+  "hand",
+];
 
 /**
  * @typedef {object} Step one panel of a row

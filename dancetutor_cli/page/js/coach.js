@@ -4,7 +4,10 @@ import { FIRST, PASSED, coachRate, missedOf, scoreShare, whereOf } from "./recor
 
 const FULL = 1; // the speed that is wanted in the end
 
-/** @typedef {{from: number, to: number, rate: number, passed: boolean}} Target beats, the speed to begin at, whether it was passed at that */
+/**
+ * @typedef {{from: number, to: number, rate: number, passed: boolean}} Target
+ * beats, the speed to begin at, whether it was passed at that
+ */
 
 export class Coach {
   /** @param {import("./app.js").App} app @param {import("./practice.js").Practice} practice */
@@ -15,7 +18,10 @@ export class Coach {
     this.message = ""; // what it has to say of the pass before
   }
 
-  /** What to practise next: what was missed, else the hardest passage that is not passed at full speed. @returns {Target | null} */
+  /**
+   * What to practise next: what was missed, else the hardest passage that is not passed at full speed.
+   * @returns {Target | null}
+   */
   next() {
     const { record, chart, doc } = this.app;
     const [missed] = missedOf(record, chart.rows);

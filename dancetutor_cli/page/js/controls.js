@@ -46,7 +46,18 @@ export function actionsOf(app, ui) {
     { name: "turnRight", keys: ["Shift+D"], run: () => turn(app, 10, 0) },
     { name: "turnUp", keys: ["Shift+W"], run: () => turn(app, 0, 8) },
     { name: "turnDown", keys: ["Shift+S"], run: () => turn(app, 0, -8) },
-    ...(app.motions.length > 1 && !app.doc.pair ? [{ name: "both", keys: ["2"], run: () => { app.both = !app.both; app.tell("settings"); } }] : []),
+    ...(app.motions.length > 1 && !app.doc.pair
+      ? [
+          {
+            name: "both",
+            keys: ["2"],
+            run: () => {
+              app.both = !app.both;
+              app.tell("settings");
+            },
+          },
+        ]
+      : []),
     { name: "otherFoot", keys: ["o"], run: () => otherFoot(app, ui) },
     { name: "notesFaster", keys: [">"], run: () => app.set("speed", Math.min(settings.speed * 1.15, 4)) },
     { name: "notesSlower", keys: ["<"], run: () => app.set("speed", Math.max(settings.speed / 1.15, 0.3)) },
@@ -63,7 +74,10 @@ function turn(app, yaw, pitch) {
   app.save();
 }
 
-/** The note that is chosen, or of the row that stands, gets the other foot. @param {import("./app.js").App} app @param {{tab: (name: string) => void}} ui */
+/**
+ * The note that is chosen, or of the row that stands, gets the other foot.
+ * @param {import("./app.js").App} app @param {{tab: (name: string) => void}} ui
+ */
 function otherFoot(app, ui) {
   app.transport.pause();
   const note = app.meant();
@@ -87,7 +101,8 @@ export function listenToKeys(app, actions) {
     if ((app.practice.along || app.input.learning) && !event.shiftKey && app.input.key(event)) return event.preventDefault();
     if (target.matches("button, summary, a, input, [role=tab]") && [" ", "Enter"].includes(event.key)) return;
     if (target.matches("input[type=range], [role=tab]") && /^(Arrow|Home|End|Page)/.test(event.key)) return;
-    if (target.matches("[role=slider]") && /^Arrow(Left|Right)$/.test(event.key) && !event.shiftKey) { // the strip, for who came to it with Tab
+    if (target.matches("[role=slider]") && /^Arrow(Left|Right)$/.test(event.key) && !event.shiftKey) {
+      // the strip, for who came to it with Tab
       event.preventDefault();
       return app.step(event.key === "ArrowLeft" ? -1 : 1);
     }
@@ -116,7 +131,10 @@ export function listenToKeys(app, actions) {
   window.addEventListener("blur", () => app.input.releaseAll()); // what is let go elsewhere is not told here
 }
 
-/** Buttons beside the strip that show less or more of the song. @param {import("./app.js").App} app @param {import("./layout.js").Ui} ui */
+/**
+ * Buttons beside the strip that show less or more of the song.
+ * @param {import("./app.js").App} app @param {import("./layout.js").Ui} ui
+ */
 export function makeZoom({ t }, ui) {
   return el("div", { class: "zoom" }, ...[["zoomIn", "+", 1, "z"], ["zoomOut", "−", -1, "⇧Z"]].map(([name, sign, by, key]) => el("button", {
     type: "button", "aria-label": t(String(name)), title: `${t(String(name))} (${key})`, onclick: () => ui.zoom(Number(by)),
@@ -130,7 +148,11 @@ export function makeZoom({ t }, ui) {
 export function makeBar(app, ui) {
   const { t, settings, transport } = app;
   const button = (/** @type {string} */ name, /** @type {string} */ sign, /** @type {() => void} */ run, key = "") =>
-    el("button", { type: "button", class: "sign", "aria-label": t(name), title: key ? `${t(name)} (${key})` : t(name), onclick: run }, sign);
+    el(
+      "button",
+      { type: "button", class: "sign", "aria-label": t(name), title: key ? `${t(name)} (${key})` : t(name), onclick: run },
+      sign,
+    );
   const play = button("playPause", "▶", () => void app.play(), t("space"));
   play.className = "sign play";
   const rate = el("input", { type: "range", min: 0.25, max: 2, step: 0.05, value: 1, "aria-label": t("speed"), class: "rate" });
@@ -145,7 +167,11 @@ export function makeBar(app, ui) {
     ["claps", "h", () => app.claps, (on) => app.setClaps(on)],
   ]).map(([name, key, is, change]) => ({ is, button: toggle(t(name), is(), change, key) }));
   const clear = button("noLoop", "✕", () => app.setLoop(null, null), "x");
-  const more = el("button", { type: "button", class: "sign more", "aria-label": t("moreControls"), title: t("moreControls"), "aria-expanded": false }, "⋯");
+  const more = el(
+    "button",
+    { type: "button", class: "sign more", "aria-label": t("moreControls"), title: t("moreControls"), "aria-expanded": false },
+    "⋯",
+  );
   const unfold = (/** @type {boolean} */ open) => {
     more.setAttribute("aria-expanded", String(bar.classList.toggle("open", open)));
     app.fresh = true;
@@ -161,10 +187,23 @@ export function makeBar(app, ui) {
       button("measureBack", "«", () => app.stepMeasure(-1), "⇧←"), button("rowBack", "◂", () => app.step(-1), ","), play,
       button("rowOn", "▸", () => app.step(1), "."), button("measureOn", "»", () => app.stepMeasure(1), "⇧→")),
     el("div", { class: "group place" }, where),
-    el("div", { class: "group extra" }, el("span", { class: "name", "aria-hidden": "true" }, t("speedName")), button("slower", "−", () => app.setRate(transport.rate - 0.05), "-"), rate,
-      button("faster", "+", () => app.setRate(transport.rate + 0.05), "+"), rateText),
-    el("div", { class: "group extra" }, el("span", { class: "name", "aria-hidden": "true" }, t("loopName-bar")), button("loopA", "A", () => app.loopHere("a"), "["), button("loopB", "B", () => app.loopHere("b"), "]"),
-      clear),
+    el(
+      "div",
+      { class: "group extra" },
+      el("span", { class: "name", "aria-hidden": "true" }, t("speedName")),
+      button("slower", "−", () => app.setRate(transport.rate - 0.05), "-"),
+      rate,
+      button("faster", "+", () => app.setRate(transport.rate + 0.05), "+"),
+      rateText,
+    ),
+    el(
+      "div",
+      { class: "group extra" },
+      el("span", { class: "name", "aria-hidden": "true" }, t("loopName-bar")),
+      button("loopA", "A", () => app.loopHere("a"), "["),
+      button("loopB", "B", () => app.loopHere("b"), "]"),
+      clear,
+    ),
     el("div", { class: "group extra" }, ...toggles.map((one) => one.button)),
     el("div", { class: "group last" }, more, button("helpSheet", "?", () => ui.help(), "?")));
   app.listeners.add((what) => {
@@ -172,7 +211,9 @@ export function makeBar(app, ui) {
       const second = app.second();
       const exact = Math.max(0, Math.round(100 * app.chart.beatAt(second)) / 100);
       const beat = transport.playing && !transport.waiting ? Math.floor(exact) : exact; // what stands has a place between the beats too
-      [whereMeasure.textContent, whereBeat.textContent, whereTime.textContent] = whereParts(t("where", { measure: Math.floor(beat / 4), beat: Math.round(100 * beat) / 100, time: clock(second) }));
+      [whereMeasure.textContent, whereBeat.textContent, whereTime.textContent] = whereParts(
+        t("where", { measure: Math.floor(beat / 4), beat: Math.round(100 * beat) / 100, time: clock(second) }),
+      );
       play.textContent = transport.playing ? "❚❚" : "▶";
       return;
     }
@@ -185,7 +226,10 @@ export function makeBar(app, ui) {
   return bar;
 }
 
-/** Measure, beat and time, each with what stands between them: a narrow window leaves the beat out. @param {string} text */
+/**
+ * Measure, beat and time, each with what stands between them: a narrow window leaves the beat out.
+ * @param {string} text
+ */
 function whereParts(text) {
   const [measure, beat, time] = text.split(" · ");
   return [measure, ` · ${beat}`, ` · ${time}`];

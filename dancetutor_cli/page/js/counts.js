@@ -31,11 +31,17 @@ function countsBar() {
     return part;
   });
   const bar = el("div", { class: "parts", "aria-hidden": "true" }, ...parts);
-  const show = (/** @type {import("./record.js").Counts} */ counts) => parts.forEach((part, k) => { part.style.flexGrow = String(counts[KINDS[k]]); });
+  const show = (/** @type {import("./record.js").Counts} */ counts) =>
+    parts.forEach((part, k) => {
+      part.style.flexGrow = String(counts[KINDS[k]]);
+    });
   return { bar, show };
 }
 
-/** The score in a colour by how good it is; "–" where nothing was played. @param {HTMLElement} element @param {import("./record.js").Counts} counts */
+/**
+ * The score in a colour by how good it is; "–" where nothing was played.
+ * @param {HTMLElement} element @param {import("./record.js").Counts} counts
+ */
 export function showShare(element, counts) {
   const share = scoreShare(counts);
   const any = share || counts.miss || counts.wrong;

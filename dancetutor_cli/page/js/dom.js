@@ -36,16 +36,27 @@ export function toggle(text, on, change, hint) {
 
 /**
  * Bars side by side, one colour for each series; readers get the words.
- * @param {number[][]} series of equal length @param {string[]} colours @param {string} about @param {number} [most] height of the highest bar
+ * @param {number[][]} series of equal length @param {string[]} colours @param {string} about
+ * @param {number} [most] height of the highest bar
  * @param {string} [look] its class
  */
 export function bars(series, colours, about, most = Math.max(1, ...series.flat()), look = "") {
-  return el("div", { class: `bars ${look}`.trim(), role: "img", "aria-label": about }, ...series[0].map((_, k) => el("div", { class: "bin" }, ...series.map((values, s) => {
-    const bar = el("div");
-    bar.style.height = `${Math.min(100, (100 * values[k]) / most)}%`;
-    bar.style.background = colours[s];
-    return bar;
-  }))));
+  return el(
+    "div",
+    { class: `bars ${look}`.trim(), role: "img", "aria-label": about },
+    ...series[0].map((_, k) =>
+      el(
+        "div",
+        { class: "bin" },
+        ...series.map((values, s) => {
+          const bar = el("div");
+          bar.style.height = `${Math.min(100, (100 * values[k]) / most)}%`;
+          bar.style.background = colours[s];
+          return bar;
+        }),
+      ),
+    ),
+  );
 }
 
 /**

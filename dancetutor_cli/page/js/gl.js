@@ -7,7 +7,10 @@ export function drawPart(gl, part) {
   gl.drawElements(gl.TRIANGLES, 3 * part.count, gl.UNSIGNED_INT, 12 * part.first);
 }
 
-/** @param {WebGL2RenderingContext} gl @param {number} unit @param {WebGLTexture} texture @param {WebGLUniformLocation | null} at */
+/**
+ * @param {WebGL2RenderingContext} gl @param {number} unit @param {WebGLTexture} texture
+ * @param {WebGLUniformLocation | null} at
+ */
 export function bind(gl, unit, texture, at) {
   gl.activeTexture(gl.TEXTURE0 + unit);
   gl.bindTexture(gl.TEXTURE_2D, texture);
@@ -49,7 +52,10 @@ export function build(gl, sources) {
 
 /** @typedef {ReturnType<typeof meshData>} MeshData */
 
-/** The dancer's mesh as the graphics card reads it. @param {import("./doc.js").Body} body @param {import("./blob.js").Arrays} arrays */
+/**
+ * The dancer's mesh as the graphics card reads it.
+ * @param {import("./doc.js").Body} body @param {import("./blob.js").Arrays} arrays
+ */
 export function meshData(body, arrays) {
   const n = body.vertices;
   const place = arrays.get("mesh.position");

@@ -35,7 +35,10 @@ export function drawGutter(c, seen, { x, receptor, lane, size, wide, ratio }, co
   c.globalAlpha = 1;
 }
 
-/** The names of moves without what explains them: "bracket (two panels with one foot)" is "bracket". @param {string} text */
+/**
+ * The names of moves without what explains them: "bracket (two panels with one foot)" is "bracket".
+ * @param {string} text
+ */
 export const unexplained = (text) => text.replace(/ \([^)]*\)/g, "");
 
 /** Lines of words that fit; null if a word does not. @param {string} text @param {(line: string) => boolean} fits */
@@ -60,7 +63,8 @@ function cut(text, fits) {
 
 /**
  * A label's short name between the notes, if it fits; it is gone before its row is at the receptors.
- * @param {CanvasRenderingContext2D} c @param {Seen} seen @param {[number, number]} gap that is free of notes @param {number} end of the canvas
+ * @param {CanvasRenderingContext2D} c @param {Seen} seen @param {[number, number]} gap that is free of notes
+ * @param {number} end of the canvas
  * @param {{receptor: number, lane: number, size: number, ratio: number}} m @param {string} colour
  */
 export function drawBetween(c, { label, y }, [left, right], end, { receptor, lane, size, ratio }, colour) {

@@ -5,7 +5,21 @@ import { lightOf } from "./feet.js";
 import { GUTTER, drawBetween, drawGutter } from "./gutter.js";
 import { labelsOf } from "./labels.js";
 import { clamp } from "./maths.js";
-import { COLOURS, INK, NOBODY, VERDICTS, drawBody, drawErrors, drawMarker, drawMine, drawPress, drawVerdict, drawWord, markerAt, notePath } from "./noteart.js";
+import {
+  COLOURS,
+  INK,
+  NOBODY,
+  VERDICTS,
+  drawBody,
+  drawErrors,
+  drawMarker,
+  drawMine,
+  drawPress,
+  drawVerdict,
+  drawWord,
+  markerAt,
+  notePath,
+} from "./noteart.js";
 import { SHOWN } from "./practice.js";
 
 /**
@@ -53,7 +67,10 @@ export class Highway {
     this.words = verdictWords(t);
   }
 
-  /** Where a column's arrow points, as her panels are seen; null for a square. @param {number} column @param {boolean} mirror */
+  /**
+   * Where a column's arrow points, as her panels are seen; null for a square.
+   * @param {number} column @param {boolean} mirror
+   */
   way(column, mirror) {
     const way = this.directions[column];
     return way === null ? null : way + (mirror ? 180 : 0);
@@ -69,8 +86,10 @@ export class Highway {
     if (this.canvas.height !== height) this.canvas.height = height;
     const { columns, beats } = this.chart;
     const finger = this.along && window.innerWidth <= NARROW;
-    const numbers = finger && columns > 5 ? 0 : (8 + 7 * String(beats.length >> 2).length) * ratio; // room left of the lanes, for the last measure's number
-    const gutter = this.labels.length && width - numbers - GUTTER * ratio >= ROOMY * ratio * columns ? GUTTER * ratio : 0; // and right of them
+    // Room left of the lanes, for the last measure's number.
+    const numbers = finger && columns > 5 ? 0 : (8 + 7 * String(beats.length >> 2).length) * ratio;
+    // And right of them.
+    const gutter = this.labels.length && width - numbers - GUTTER * ratio >= ROOMY * ratio * columns ? GUTTER * ratio : 0;
     const beside = finger && !gutter ? 0 : Math.max(gutter, Math.min(numbers, 8 * ratio));
     const lane = Math.min((width - numbers - beside) / columns, WIDEST * ratio);
     const left = Math.max(numbers, 0.5 * (width - gutter - lane * columns));
@@ -78,7 +97,10 @@ export class Highway {
     return { ratio, above, width, height, lane, left, gutter, receptor: Math.max(0.11 * height, 0.62 * lane + above), size: 0.92 * lane };
   }
 
-  /** x of the middle of a lane. @param {number} column @param {{lane: number, left: number}} m @param {boolean} mirror */
+  /**
+   * x of the middle of a lane.
+   * @param {number} column @param {{lane: number, left: number}} m @param {boolean} mirror
+   */
   laneX(column, m, mirror) {
     const place = mirror ? this.chart.columns - 1 - column : column;
     return m.left + (place + 0.5) * m.lane;
@@ -117,11 +139,20 @@ export class Highway {
     this.drawLabels(m, y, scene.along ? scene.second : from, until, scene.mirror);
     const x = m.left + 0.5 * m.lane * chart.columns;
     if (scene.passed) this.drawPassed(scene.passed.split(" · "), x, m);
-    else if (scene.along) drawErrors(c, scene.errors, { x, y: m.receptor - 0.62 * m.lane - 0.26 * m.above, width: Math.min(0.8 * m.lane * chart.columns, 220 * m.ratio), ratio: m.above / VERDICT });
+    else if (scene.along)
+      drawErrors(c, scene.errors, {
+        x,
+        y: m.receptor - 0.62 * m.lane - 0.26 * m.above,
+        width: Math.min(0.8 * m.lane * chart.columns, 220 * m.ratio),
+        ratio: m.above / VERDICT,
+      });
     if (feedback && !scene.passed) this.drawFeedback(feedback, x, m);
   }
 
-  /** How the last passes of a loop went, where verdicts come else. @param {string[]} lines one or two @param {number} x @param {ReturnType<Highway["measure"]>} m */
+  /**
+   * How the last passes of a loop went, where verdicts come else.
+   * @param {string[]} lines one or two @param {number} x @param {ReturnType<Highway["measure"]>} m
+   */
   drawPassed(lines, x, m) {
     const most = m.lane * this.chart.columns;
     lines.forEach((line, k) => {
@@ -131,7 +162,11 @@ export class Highway {
     });
   }
 
-  /** The verdict of the last press, the notes in a row left of it, and right how early or late it was: above the receptors, where no note comes. @param {import("./practice.js").Feedback} feedback @param {number} x @param {ReturnType<Highway["measure"]>} m */
+  /**
+   * The verdict of the last press, the notes in a row left of it, and right how early or late it was: above the
+   * receptors, where no note comes.
+   * @param {import("./practice.js").Feedback} feedback @param {number} x @param {ReturnType<Highway["measure"]>} m
+   */
   drawFeedback({ verdict, at, run, error }, x, m) {
     const c = this.context;
     const y = m.receptor - 0.62 * m.lane - 0.68 * m.above;
@@ -154,7 +189,10 @@ export class Highway {
     for (let k = 0; k <= this.chart.columns; ++k) c.fillRect(Math.round(m.left + k * m.lane), 0, m.ratio, m.height);
   }
 
-  /** @param {ReturnType<Highway["measure"]>} m @param {(s: number) => number} y @param {number} from @param {number} until */
+  /**
+   * @param {ReturnType<Highway["measure"]>} m @param {(s: number) => number} y @param {number} from
+   * @param {number} until
+   */
   drawBeats(m, y, from, until) {
     const c = this.context;
     const beats = this.chart.beats;
@@ -259,7 +297,8 @@ export class Highway {
 
   /**
    * Words beside the notes.
-   * @param {ReturnType<Highway["measure"]>} m @param {(s: number) => number} y @param {number} from @param {number} until @param {boolean} mirror
+   * @param {ReturnType<Highway["measure"]>} m @param {(s: number) => number} y @param {number} from
+   * @param {number} until @param {boolean} mirror
    */
   drawLabels(m, y, from, until, mirror) {
     const { context: c, chart } = this;
@@ -270,13 +309,17 @@ export class Highway {
     const colours = this.style.callout;
     if (m.gutter) return drawGutter(c, seen, { ...m, x: m.left + m.lane * chart.columns, size, wide: m.gutter }, colours);
     for (const one of seen) {
-      const beside = (/** @type {number} */ n) => y(chart.second[n]) - one.y < 0.5 * m.size + size && one.y - y(chart.end[n]) < 0.5 * m.size + size;
+      const beside = (/** @type {number} */ n) =>
+        y(chart.second[n]) - one.y < 0.5 * m.size + size && one.y - y(chart.end[n]) < 0.5 * m.size + size;
       const near = [...chart.second.keys()].filter(beside).map((n) => this.laneX(chart.column[n], m, mirror));
       drawBetween(c, one, widestGap(near, 0.5 * m.lane, m.width), m.width, { ...m, size }, colours[one.label.severity]);
     }
   }
 
-  /** The lane at a place of the canvas, the nearest one beside them: fingers are wide. @param {number} px pixels of CSS @param {boolean} mirror */
+  /**
+   * The lane at a place of the canvas, the nearest one beside them: fingers are wide.
+   * @param {number} px pixels of CSS @param {boolean} mirror
+   */
   columnAt(px, mirror) {
     const m = this.measure();
     const place = clamp(Math.floor((px * m.ratio - m.left) / m.lane), 0, this.chart.columns - 1);
@@ -301,7 +344,10 @@ export class Highway {
   }
 }
 
-/** What is left of a note that has gone by the receptors: above them stands the verdict. @param {number} above pixels @param {number} lane pixels */
+/**
+ * What is left of a note that has gone by the receptors: above them stands the verdict.
+ * @param {number} above pixels @param {number} lane pixels
+ */
 export const passedAlpha = (above, lane) => clamp(1.5 - (2 * above) / lane, 0, 1);
 
 /**

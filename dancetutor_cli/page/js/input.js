@@ -72,7 +72,10 @@ export class Input {
     return this.called(this.touched);
   }
 
-  /** All that presses each panel: keys, or arrows on a phone; then buttons (B) and axes (A) of the mats, as the browser numbers them. */
+  /**
+   * All that presses each panel: keys, or arrows on a phone; then buttons (B) and axes (A) of the mats, as the browser
+   * numbers them.
+   */
   listed() {
     const pads = this.pads();
     return this.called(this.keyless).map((names, column) => [...names, ...new Set(pads.flatMap((pad) => this.buttonNames(pad, column)))]);
@@ -82,7 +85,9 @@ export class Input {
   buttonNames(pad, column) {
     const own = this.settings.pads[this.padName(pad)];
     const end = own || pad.mapping === "standard" ? undefined : ENDS[/** @type {keyof typeof ENDS} */ (this.panels[column])];
-    return [this.buttons(pad)[column], end].flatMap((number) => (typeof number !== "number" ? [] : [number < AXES ? `B${number}` : `A${(number - AXES) >> 1}${number % 2 ? "+" : "−"}`]));
+    return [this.buttons(pad)[column], end].flatMap((number) =>
+      typeof number !== "number" ? [] : [number < AXES ? `B${number}` : `A${(number - AXES) >> 1}${number % 2 ? "+" : "−"}`],
+    );
   }
 
   /** @param {boolean} arrows @returns {string[][]} */
@@ -179,7 +184,10 @@ export class Input {
     this.held.forEach((is, column) => { if (is) this.release(column); });
   }
 
-  /** Look at the pads apart from drawing, so that a short press between two pictures is not lost. @returns what `clearInterval` takes */
+  /**
+   * Look at the pads apart from drawing, so that a short press between two pictures is not lost.
+   * @returns what `clearInterval` takes
+   */
   watch() {
     return setInterval(() => this.poll(), EVERY);
   }
@@ -218,7 +226,10 @@ export class Input {
     this.onControl(which);
   }
 
-  /** Give Start or Select another button of a mat; keys have no such. @param {number} which of `CONTROLS` @param {string} name as `learning` got it */
+  /**
+   * Give Start or Select another button of a mat; keys have no such.
+   * @param {number} which of `CONTROLS` @param {string} name as `learning` got it
+   */
   assignControl(which, name) {
     const pad = /^(.*)#(\d+)$/.exec(name);
     if (!pad) return;

@@ -19,7 +19,11 @@ export class Judge {
     /** @type {number[]} seconds of presses of a panel without a note */
     this.wrong = [];
     /** @type {Map<number, {row: number, limb: number, measure: number}>} the solver's row and foot of each note */
-    this.stepOf = new Map(chart.rows.flatMap((row) => row.steps.map(({ note, limb }) => [note, { row: row.row, limb, measure: Math.floor(row.beat / 4 + 1e-6) }])));
+    this.stepOf = new Map(
+      chart.rows.flatMap((row) =>
+        row.steps.map(({ note, limb }) => [note, { row: row.row, limb, measure: Math.floor(row.beat / 4 + 1e-6) }]),
+      ),
+    );
     this.next = 0; // first row that may still be missed
     this.from = -Infinity; // rows before this second are not judged
     this.slowest = Infinity; // the slowest rate since the first judged row
@@ -72,7 +76,10 @@ export class Judge {
     }
   }
 
-  /** Note the rate of the music for `slowest`, unless it is before the first judged row. @param {number} second @param {number} rate */
+  /**
+   * Note the rate of the music for `slowest`, unless it is before the first judged row.
+   * @param {number} second @param {number} rate
+   */
   countRate(second, rate) {
     const first = this.chart.rowSeconds.find((one) => one >= this.from) ?? Infinity;
     if (second >= first - WINDOW * rate) this.slowest = Math.min(this.slowest, rate);

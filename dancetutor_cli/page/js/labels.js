@@ -1,6 +1,9 @@
 // Words for moves and findings: in the page's language where its file has them, else as the solver and the linter say.
 
-/** @typedef {{second: number, text: string, short: string, severity: string, columns: number[]}} Label short: where there is little room; columns: the row's notes */
+/**
+ * @typedef {{second: number, text: string, short: string, severity: string, columns: number[]}} Label
+ * short: where there is little room; columns: the row's notes
+ */
 
 /** A panel's name. @param {import("./words.js").Translate} t @param {string} name */
 export function panelName(t, name) {
@@ -23,7 +26,10 @@ export function moveNames(t, names) {
   return words.filter((word) => !words.some((other) => other.startsWith(`${word} `))).join(", ");
 }
 
-/** A move's or a rule's shortest name; its sign for a rule without one. @param {import("./words.js").Translate} t @param {string} name */
+/**
+ * A move's or a rule's shortest name; its sign for a rule without one.
+ * @param {import("./words.js").Translate} t @param {string} name
+ */
 function shortName(t, name) {
   const label = t(`short-${name}`);
   return label === `short-${name}` ? (/^DT/.test(name) ? name : moveName(t, name)) : label;
@@ -61,14 +67,16 @@ const WRITTEN = /** @type {Record<string, number>} */ ({ three: 3, four: 4 });
 export function findingFigures(t, { message }) {
   for (const [name, pattern] of FIGURES) {
     const found = pattern.exec(message);
-    if (found) return `(${t(`figures-${name}`, Object.fromEntries(found.slice(1).map((text, k) => [`n${k + 1}`, WRITTEN[text] ?? Number(text)])))})`;
+    if (found)
+      return `(${t(`figures-${name}`, Object.fromEntries(found.slice(1).map((text, k) => [`n${k + 1}`, WRITTEN[text] ?? Number(text)])))})`;
   }
   return "";
 }
 
 /**
  * Words beside the notes: moves where they begin, and findings.
- * @param {import("./doc.js").PageDoc} doc @param {import("./chart.js").Chart} chart @param {import("./words.js").Translate} t @returns {Label[]}
+ * @param {import("./doc.js").PageDoc} doc @param {import("./chart.js").Chart} chart
+ * @param {import("./words.js").Translate} t @returns {Label[]}
  */
 export function labelsOf(doc, chart, t) {
   /** @type {Label[]} */
@@ -82,7 +90,13 @@ export function labelsOf(doc, chart, t) {
     const fresh = [...now].filter(([word]) => !before.includes(word));
     before = [...now.keys()];
     if (!fresh.length) continue;
-    const label = { second: row.second, text: fresh.map(([word]) => word).join(", "), short: fresh[0][1], severity: "move", columns: row.steps.map((step) => step.column) };
+    const label = {
+      second: row.second,
+      text: fresh.map(([word]) => word).join(", "),
+      short: fresh[0][1],
+      severity: "move",
+      columns: row.steps.map((step) => step.column),
+    };
     out.push(label);
     at.set(Math.round(1000 * row.second), label);
   }
@@ -90,7 +104,14 @@ export function labelsOf(doc, chart, t) {
     if (one.second === null || one.column === null) continue;
     const same = at.get(Math.round(1000 * one.second));
     if (same) same.severity = one.severity;
-    else out.push({ second: one.second, text: findingWords(t, one)[0], short: shortName(t, one.rule), severity: one.severity, columns: [one.column] });
+    else
+      out.push({
+        second: one.second,
+        text: findingWords(t, one)[0],
+        short: shortName(t, one.rule),
+        severity: one.severity,
+        columns: [one.column],
+      });
   }
   return out.sort((a, b) => a.second - b.second);
 }

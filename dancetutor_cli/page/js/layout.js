@@ -40,8 +40,14 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   for (const [element, name] of /** @type {[HTMLElement, string][]} */ ([[stage, "picture"], [lanes, "notesKeys"], [strip, "timeline"]])) {
     element.setAttribute("aria-label", t(name));
   }
-  const tabs = makeTabs(app, ui, [["passages", passagesPanel(app)], ["along", alongPanel(app)], ["results", resultsPanel(app)],
-    ...(app.doc.findings.length ? [/** @type {[string, HTMLElement]} */ (["findings", findingsPanel(app)])] : []), ["author", authorPanel(app)], ["settings", settingsPanel(app, load)]]);
+  const tabs = makeTabs(app, ui, [
+    ["passages", passagesPanel(app)],
+    ["along", alongPanel(app)],
+    ["results", resultsPanel(app)],
+    ...(app.doc.findings.length ? [/** @type {[string, HTMLElement]} */ (["findings", findingsPanel(app)])] : []),
+    ["author", authorPanel(app)],
+    ["settings", settingsPanel(app, load)],
+  ]);
   const sheet = helpSheet(app, actions);
   ui.help = () => sheet.showModal();
   ui.tab = tabs.choose;
@@ -65,7 +71,14 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
   const note = el("p", { class: "unseen", role: "status" });
   app.listeners.add((what) => { if (what === "feet") note.textContent = app.chosen >= 0 ? noteText(app, app.chosen) : ""; });
   const root = /** @type {HTMLElement} */ (document.getElementById("app"));
-  const main = el("main", { class: app.chart.columns > 5 ? "wide" : "" }, stage, el("section", { class: "notes", "aria-label": t("notes") }, lanes, slimStanding(app), note), chips(app), tabs.side);
+  const main = el(
+    "main",
+    { class: app.chart.columns > 5 ? "wide" : "" },
+    stage,
+    el("section", { class: "notes", "aria-label": t("notes") }, lanes, slimStanding(app), note),
+    chips(app),
+    tabs.side,
+  );
   root.replaceChildren(
     el("header", {}, el("div", { class: "song" }, el("h1", {}, words.title), badge, app.doc.pair ? players(style) : null,
       el("p", { class: "about" }, about.filter(Boolean).join(" · "))), message, pick),
@@ -80,7 +93,8 @@ export function layOut(app, { stage, lanes, strip }, ui, { actions, load }) {
     }
     message.textContent = message.title = statusText(app);
     message.classList.toggle("quiet", quiet(app));
-    const lasts = app.transport.loop !== null || app.practice.wait; // on a phone that has a place of its own; what passes lies on the picture
+    // On a phone that has a place of its own; what passes lies on the picture.
+    const lasts = app.transport.loop !== null || app.practice.wait;
     message.classList.toggle("lasts", lasts);
     message.classList.toggle("brief", !lasts && (app.notice !== "" || app.practice.unknownKey === "now" || app.practice.over !== null));
     message.classList.toggle("shown", app.practice.along && app.practice.over !== null && !app.notice); // the card shows it
@@ -109,8 +123,14 @@ function players(style) {
 /** @param {import("./app.js").App} app @param {import("./controls.js").Action[]} actions */
 function helpSheet(app, actions) {
   const { t } = app;
-  const rows = actions.map((action) => el("tr", {}, el("th", { scope: "row" }, ...action.keys.flatMap((key) => [el("kbd", {}, keyText(app, key)), " "])),
-    el("td", {}, t(action.name))));
+  const rows = actions.map((action) =>
+    el(
+      "tr",
+      {},
+      el("th", { scope: "row" }, ...action.keys.flatMap((key) => [el("kbd", {}, keyText(app, key)), " "])),
+      el("td", {}, t(action.name)),
+    ),
+  );
   const keys = [el("p", {}, t("helpIntro")), el("table", {}, el("tbody", {}, ...rows))];
   const hands = [el("h3", {}, t("helpTouchTitle")), ...t("helpTouch").split("\n").map((line) => el("p", {}, line))];
   const mouse = el("p", {}, t("helpMouse"));
@@ -137,7 +157,13 @@ function makeTabs(app, ui, panels) {
     ...(name === "settings" ? { "aria-label": app.t("tab-settings"), title: app.t("tab-settings") } : {}),
   }, name === "settings" ? "⚙\ufe0e" : app.t(`tab-${name}`)));
   let open = panels[0][0];
-  const bodies = panels.map(([name, body], k) => el("div", { role: "tabpanel", id: `panel-${name}`, "aria-labelledby": `tab-${name}`, hidden: k !== 0, class: "panel", tabindex: 0 }, body));
+  const bodies = panels.map(([name, body], k) =>
+    el(
+      "div",
+      { role: "tabpanel", id: `panel-${name}`, "aria-labelledby": `tab-${name}`, hidden: k !== 0, class: "panel", tabindex: 0 },
+      body,
+    ),
+  );
   /** @param {string} name */
   function choose(name) {
     ui.fewer();
@@ -187,17 +213,40 @@ function makeTabs(app, ui, panels) {
 /** Buttons of the cameras over the picture. @param {import("./app.js").App} app */
 function cameraButtons(app) {
   const { t, settings } = app;
-  const buttons = CAMERAS.map((name, k) => el("button", {
-    type: "button", class: "toggle camera", title: t(`camera-${name}-long`),
-    onclick: () => { // on a phone only the chosen one is there: a tap goes on to the next
-      const alone = buttons.filter((button) => button.offsetParent !== null).length === 1;
-      const turned = Object.entries(FIRST_VIEW).some(([what, value]) => settings[/** @type {"yaw"} */ (what)] !== value);
-      if (name === "free" && settings.camera === "free" && (turned || !alone)) return app.resetView();
-      app.setCamera(CAMERAS[alone ? (k + 1) % CAMERAS.length : k]);
-    },
-  }, t(`camera-${name}`)));
-  const both = app.motions.length > 1 && !app.doc.pair
-    ? el("button", { type: "button", class: "toggle", title: secondText(app), onclick: () => { app.both = !app.both; app.tell("settings"); } }, t("both")) : null;
+  const buttons = CAMERAS.map((name, k) =>
+    el(
+      "button",
+      {
+        type: "button",
+        class: "toggle camera",
+        title: t(`camera-${name}-long`),
+        onclick: () => {
+          // on a phone only the chosen one is there: a tap goes on to the next
+          const alone = buttons.filter((button) => button.offsetParent !== null).length === 1;
+          const turned = Object.entries(FIRST_VIEW).some(([what, value]) => settings[/** @type {"yaw"} */ (what)] !== value);
+          if (name === "free" && settings.camera === "free" && (turned || !alone)) return app.resetView();
+          app.setCamera(CAMERAS[alone ? (k + 1) % CAMERAS.length : k]);
+        },
+      },
+      t(`camera-${name}`),
+    ),
+  );
+  const both =
+    app.motions.length > 1 && !app.doc.pair
+      ? el(
+          "button",
+          {
+            type: "button",
+            class: "toggle",
+            title: secondText(app),
+            onclick: () => {
+              app.both = !app.both;
+              app.tell("settings");
+            },
+          },
+          t("both"),
+        )
+      : null;
   const row = el("div", { class: "cameras", role: "group", "aria-label": t("camera") }, ...buttons, both);
   const show = () => {
     buttons.forEach((button, k) => button.setAttribute("aria-pressed", String(CAMERAS[k] === settings.camera)));

@@ -25,9 +25,20 @@ async function main() {
   const stage = el("section", { class: "picture" });
   const lanes = el("canvas", { class: "lanes", role: "application", tabindex: 0 });
   const strip = el("canvas", {
-    class: "strip", role: "slider", tabindex: 0, "aria-valuemin": app.start.toFixed(1), "aria-valuemax": app.end.toFixed(1), "aria-valuenow": "0",
+    class: "strip",
+    role: "slider",
+    tabindex: 0,
+    "aria-valuemin": app.start.toFixed(1),
+    "aria-valuemax": app.end.toFixed(1),
+    "aria-valuenow": "0",
   });
-  const ui = { zoom: (/** @type {number} */ _by) => {}, help: () => {}, tab: (/** @type {string} */ _name) => {}, fewer: () => false, fold: () => {} };
+  const ui = {
+    zoom: (/** @type {number} */ _by) => {},
+    help: () => {},
+    tab: (/** @type {string} */ _name) => {},
+    fewer: () => false,
+    fold: () => {},
+  };
   const actions = actionsOf(app, ui);
   const show = () => layOut(app, { stage, lanes, strip }, ui, { actions, load: loadFile });
   app.onLanguage = () => {
@@ -38,7 +49,13 @@ async function main() {
   await pause();
   app.highway = new Highway(lanes, doc, app.chart, app.t);
   const timeline = new Timeline(strip, doc, app.chart, {
-    start: app.start, end: app.end, seek: (second) => app.seek(second), loop: (a, b) => app.setLoop(a, b), changed: () => { app.fresh = true; },
+    start: app.start,
+    end: app.end,
+    seek: (second) => app.seek(second),
+    loop: (a, b) => app.setLoop(a, b),
+    changed: () => {
+      app.fresh = true;
+    },
   });
   ui.zoom = (by) => timeline.zoom(by);
   listenToLanes(app, lanes, ui);
@@ -121,7 +138,8 @@ function listenToLanes(app, lanes, ui) {
   lanes.addEventListener("click", (event) => {
     if (app.practice.along) return;
     const finger = app.transport.playing && /** @type {PointerEvent} */ (event).pointerType === "touch";
-    if (finger || document.querySelector("#tab-along[aria-selected=true]")) return app.practice.idle(); // means to play, not to choose a note
+    // Means to play, not to choose a note.
+    if (finger || document.querySelector("#tab-along[aria-selected=true]")) return app.practice.idle();
     const box = lanes.getBoundingClientRect();
     const note = app.highway?.noteAt(event.clientX - box.left, event.clientY - box.top, app.highwayScene(app.second())) ?? -1;
     if (note >= 0) {
@@ -137,7 +155,12 @@ function listenToLanes(app, lanes, ui) {
     const meant = app.meant();
     const at = notes.indexOf(meant);
     const stands = meant === app.chosen; // else the first arrow only chooses the note of the row that is seen
-    const to = /** @type {Record<string, number>} */ ({ ArrowRight: stands ? at + 1 : Math.max(at, 0), ArrowLeft: stands ? at - 1 : at, Home: 0, End: last })[event.key];
+    const to = /** @type {Record<string, number>} */ ({
+      ArrowRight: stands ? at + 1 : Math.max(at, 0),
+      ArrowLeft: stands ? at - 1 : at,
+      Home: 0,
+      End: last,
+    })[event.key];
     if (event.key === "Enter" && app.chosen >= 0) ui.tab("author");
     else if (to !== undefined) app.goTo(notes[Math.min(Math.max(to, 0), last)]);
     else return;

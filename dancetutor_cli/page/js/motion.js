@@ -24,7 +24,9 @@ export class Motion {
     this.inverse = body.inverseBind;
     this.start = about.start;
     this.end = about.end;
-    this.groups = about.groups.map((group) => readGroup(group, /** @type {Int16Array} */ (arrays.get(`${about.name}.turn${group.number}`))));
+    this.groups = about.groups.map((group) =>
+      readGroup(group, /** @type {Int16Array} */ (arrays.get(`${about.name}.turn${group.number}`))),
+    );
     this.root = Float32Array.from(arrays.get(`${about.name}.root`), (x) => x * ROOT);
   }
 
@@ -47,7 +49,8 @@ export class Motion {
       const before = Math.min(Math.floor(place), Math.max(count - 2, 0));
       const after = Math.min(before + 1, count - 1);
       const share = place - before;
-      for (let i = 0; i < joints.length; ++i) mix(local, 4 * joints[i], group.turns, rows[i] * count, count, before, after, share, full[i] ? 0 : steps[i]);
+      for (let i = 0; i < joints.length; ++i)
+        mix(local, 4 * joints[i], group.turns, rows[i] * count, count, before, after, share, full[i] ? 0 : steps[i]);
       if (g === 0) {
         for (let k = 0; k < 3; ++k) pose.root[k] = this.root[k * count + before] * (1 - share) + this.root[k * count + after] * share;
       }

@@ -144,7 +144,13 @@ export function drawMarker(c, { limb, colour, changed }, x, y, size) {
   c.fillText(right ? "R" : "L", x, y + 0.04 * size);
 }
 
-export const COLOURS = /** @type {Record<string, string>} */ ({ hit: "#6fe38a", early: "#ffc857", late: "#ffa14a", miss: "#ff6b6b", wrong: "#ff6b6b" });
+export const COLOURS = /** @type {Record<string, string>} */ ({
+  hit: "#6fe38a",
+  early: "#ffc857",
+  late: "#ffa14a",
+  miss: "#ff6b6b",
+  wrong: "#ff6b6b",
+});
 export const VERDICTS = Object.keys(COLOURS);
 
 /**
@@ -208,7 +214,11 @@ export function drawErrors(c, errors, { x, y, width, ratio }) {
   c.fillStyle = INK; // what is left of a note that has gone by is beneath it
   c.fillRect(x - 0.5 * width - 4 * ratio, y - 7 * ratio, width + 8 * ratio, 14 * ratio);
   c.globalAlpha = 0.85;
-  for (const [from, to, fill] of /** @type {[number, number, string][]} */ ([[-WINDOW, -GOOD, COLOURS.early], [-GOOD, GOOD, COLOURS.hit], [GOOD, WINDOW, COLOURS.late]])) {
+  for (const [from, to, fill] of /** @type {[number, number, string][]} */ ([
+    [-WINDOW, -GOOD, COLOURS.early],
+    [-GOOD, GOOD, COLOURS.hit],
+    [GOOD, WINDOW, COLOURS.late],
+  ])) {
     c.fillStyle = fill;
     c.fillRect(at(from), y - 1.5 * ratio, at(to) - at(from), 3 * ratio);
   }

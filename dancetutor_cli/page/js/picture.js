@@ -131,7 +131,10 @@ export class Picture {
     this.settings.pitch = Math.min(Math.max(this.settings.pitch + pitch, 2), 88);
   }
 
-  /** @param {string} name @param {number} width @param {number} height @param {[number, number, number]} root where she is */
+  /**
+   * @param {string} name @param {number} width @param {number} height
+   * @param {[number, number, number]} root where she is
+   */
   camera(name, width, height, root) {
     if (name === "free") { // from near, the pad is what is looked at; else she is, when she walks on too
       const free = orbit(this.doc, this.settings, width, height);
@@ -171,8 +174,12 @@ export class Picture {
       const left = Math.round((k * width) / count);
       const wide = Math.round(((k + 1) * width) / count) - left;
       views.push({
-        camera: this.camera(wanted.camera, wide, height, root), box: /** @type {[number, number, number, number]} */ ([left, 0, wide, height]),
-        skin: this.skins[k], root, lights: this.lights, other: pair?.skin ?? null,
+        camera: this.camera(wanted.camera, wide, height, root),
+        box: /** @type {[number, number, number, number]} */ ([left, 0, wide, height]),
+        skin: this.skins[k],
+        root,
+        lights: this.lights,
+        other: pair?.skin ?? null,
         marks: pair ? [...marks.slice(0, 2), ...pair.marks.slice(0, 2)] : marks, // of two the feet, not the palms
         middles: /** @type {[number, number][]} */ ((pair ? [pose.at(0), pair.root] : [root]).map((at) => [at[0], at[2]])),
         soles: k === 0 && !pair && this.viewer ? this.soles(wanted.next) : [null, null],
@@ -207,7 +214,10 @@ export class Picture {
     return [0, 1].map((limb) => (next.steps.some((step) => step.limb === limb) && marks[limb].near >= 0 ? marks[limb] : null));
   }
 
-  /** Fewer pixels, then no shadow, then fewer still, where drawing is slow, as with WebGL in software. @param {boolean} playing @param {number} area pixels of CSS */
+  /**
+   * Fewer pixels, then no shadow, then fewer still, where drawing is slow, as with WebGL in software.
+   * @param {boolean} playing @param {number} area pixels of CSS
+   */
   pace(playing, area) {
     const now = performance.now();
     const apart = now - this.last;

@@ -31,12 +31,18 @@ export function stretch(t, from, to) {
   return t("fromTo", { from: placeOf(t, Math.round(4 * from)), to: placeOf(t, Math.round(4 * to) - 1) });
 }
 
-/** The place of a row as musicians count: the beats of each measure from 1 on. @param {import("./words.js").Translate} t @param {number} beat */
+/**
+ * The place of a row as musicians count: the beats of each measure from 1 on.
+ * @param {import("./words.js").Translate} t @param {number} beat
+ */
 export function placeInMeasure(t, beat) {
   return t("measureAt", { measure: Math.floor(beat / 4), beat: 1 + Math.round(1000 * (beat % 4)) / 1000 });
 }
 
-/** The place of a row, as `analyze` tells it: measures and beats are both counted from 0, through the song. @param {import("./words.js").Translate} t @param {number} beat */
+/**
+ * The place of a row, as `analyze` tells it: measures and beats are both counted from 0, through the song.
+ * @param {import("./words.js").Translate} t @param {number} beat
+ */
 export function placeOf(t, beat) {
   return t("measureAt", { measure: Math.floor(beat / 4), beat: Math.round(1000 * beat) / 1000 });
 }

@@ -10,7 +10,10 @@ export const SHOWN = 400; // milliseconds in which a verdict above the receptors
 const LOST = 10; // notes missed in a row after which something easier is offered
 const MARKS = 24; // presses on the scale of errors
 
-/** @typedef {{verdict: string, column: number, at: number, run: number, error: number | undefined}} Feedback of the last press, or of a miss (column -1); at: ms; run: notes in a row; error: seconds late */
+/**
+ * @typedef {{verdict: string, column: number, at: number, run: number, error: number | undefined}} Feedback
+ * of the last press, or of a miss (column -1); at: ms; run: notes in a row; error: seconds late
+ */
 
 const EARLY = 0.2; // seconds before a row from which its press counts while the clock waits for rows
 
@@ -98,7 +101,10 @@ export class Practice {
     this.updateHold();
   }
 
-  /** Record the result of a part of the song, if both feet were played. @param {{a: number, b: number}} part seconds @param {import("./judge.js").Tally} tally */
+  /**
+   * Record the result of a part of the song, if both feet were played.
+   * @param {{a: number, b: number}} part seconds @param {import("./judge.js").Tally} tally
+   */
   recordPart({ a, b }, tally) {
     const { chart, record } = this.app;
     const { foot, slowest } = this.judge;
@@ -146,7 +152,10 @@ export class Practice {
     this.app.tell("along");
   }
 
-  /** Let the clock wait for rows, or not; judge again, because presses while it waits are not in time. @param {boolean} on */
+  /**
+   * Let the clock wait for rows, or not; judge again, because presses while it waits are not in time.
+   * @param {boolean} on
+   */
   setWait(on) {
     this.recordOutcomes();
     if (on && !this.along) this.setAlong(true);
@@ -206,7 +215,10 @@ export class Practice {
     this.app.tell("hits");
   }
 
-  /** Show a verdict for a moment. @param {string | null} verdict null: the press does not count @param {number} column */
+  /**
+   * Show a verdict for a moment.
+   * @param {string | null} verdict null: the press does not count @param {number} column
+   */
   show(verdict, column) {
     if (!verdict) return;
     this.run = verdict === "miss" || verdict === "wrong" ? 0 : this.run + 1;
@@ -225,8 +237,13 @@ export class Practice {
 
   /** Show a notice that a press is not judged, because the user does not play along or the song is paused. */
   idle() {
-    const { t, input: { keyless } } = this.app;
-    this.app.notice = this.along ? t("paused", { keys: keyless ? "▶" : `▶ (${t("space")})` }) : t("padIdle", { key: keyless ? "" : " (p)" });
+    const {
+      t,
+      input: { keyless },
+    } = this.app;
+    this.app.notice = this.along
+      ? t("paused", { keys: keyless ? "▶" : `▶ (${t("space")})` })
+      : t("padIdle", { key: keyless ? "" : " (p)" });
     this.idleNotice = this.app.notice;
     this.unknownKeyAt = performance.now();
     this.app.tell("along");

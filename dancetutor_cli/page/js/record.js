@@ -21,7 +21,10 @@ export const PASSED = 0.95; // score with which a stretch is passed
  * @property {number} hit @property {number} early @property {number} late @property {number} miss @property {number} wrong
  * @property {[number[], number[]]} feet
  */
-/** @typedef {{tries: number, misses: number, timed: number, sum: number, missed: boolean, rate: number}} RowRecord sum: ms; missed: the last time; rate: % at which its measure was last played without a miss, 0: never */
+/**
+ * @typedef {{tries: number, misses: number, timed: number, sum: number, missed: boolean, rate: number}} RowRecord
+ * sum: ms; missed: the last time; rate: % at which its measure was last played without a miss, 0: never
+ */
 /** @typedef {{name: string, from: number, to: number, rate: number}} SavedLoop beats, %; where it ends */
 /**
  * @typedef {object} PracticeRecord
@@ -31,7 +34,10 @@ export const PASSED = 0.95; // score with which a stretch is passed
  * @property {Record<string, [number, number]>} plays score and speed, %, of the best pass at any speed, by beats
  * @property {number} top the best of a whole song at full speed, %
  */
-/** @typedef {{row: number, limb: number, measure?: number, verdict: import("./judge.js").Verdict, error: number | undefined}} Outcome of a note; error: seconds */
+/**
+ * @typedef {{row: number, limb: number, measure?: number, verdict: import("./judge.js").Verdict, error: number | undefined}} Outcome
+ * of a note; error: seconds
+ */
 
 /** @returns {PracticeRecord} */
 export const emptyRecord = () => ({ days: [], rows: {}, loops: [], best: {}, scores: {}, plays: {}, top: 0 });
@@ -45,7 +51,11 @@ export const dayOf = (date) => [date.getFullYear(), date.getMonth() + 1, date.ge
 /** @param {string} day @returns {Day} */
 const newDay = (day) => ({ day, hit: 0, early: 0, late: 0, miss: 0, wrong: 0, feet: [new Array(BINS).fill(0), new Array(BINS).fill(0)] });
 
-/** Add what was played at a speed. @param {PracticeRecord} record @param {string} day @param {Outcome[]} outcomes @param {number} wrong @param {number} rate */
+/**
+ * Add what was played at a speed.
+ * @param {PracticeRecord} record @param {string} day @param {Outcome[]} outcomes @param {number} wrong
+ * @param {number} rate
+ */
 export function addOutcomes(record, day, outcomes, wrong, rate) {
   if (!outcomes.length && !wrong) return;
   let today = record.days.find((one) => one.day === day);
@@ -72,17 +82,26 @@ export function addClean(record, where, rate) {
   record.best[where] = Math.max(record.best[where] ?? 0, Math.round(100 * rate));
 }
 
-/** How a pass went: the best one is that of the largest score times speed. @param {PracticeRecord} record @param {string} where @param {number} share 0..1 @param {number} rate */
+/**
+ * How a pass went: the best one is that of the largest score times speed.
+ * @param {PracticeRecord} record @param {string} where @param {number} share 0..1 @param {number} rate
+ */
 export function addPlay(record, where, share, rate) {
   const score = Math.round(100 * share);
   record.plays[where] = better(record.plays[where], [score, Math.round(100 * rate)]);
   if (rate >= 1) record.scores[where] = Math.max(record.scores[where] ?? 0, score);
 }
 
-/** The better of two passes; of equal ones the quicker. @param {[number, number] | undefined} mine @param {[number, number]} theirs */
+/**
+ * The better of two passes; of equal ones the quicker.
+ * @param {[number, number] | undefined} mine @param {[number, number]} theirs
+ */
 const better = (mine, theirs) => (mine && mine[0] * mine[1] - theirs[0] * theirs[1] + (mine[1] - theirs[1]) / 1000 >= 0 ? mine : theirs);
 
-/** Whether a part was passed at full speed: without a slip, or with a score that the coach calls passed. @param {PracticeRecord} record @param {string} where */
+/**
+ * Whether a part was passed at full speed: without a slip, or with a score that the coach calls passed.
+ * @param {PracticeRecord} record @param {string} where
+ */
 export const passedFull = ({ best, scores }, where) => best[where] >= 100 || scores[where] >= 100 * PASSED;
 
 /** @param {number} from @param {number} to beats */
@@ -96,7 +115,10 @@ export const hitShare = ({ hit, early, late, miss }) => hit / Math.max(hit + ear
 /** Share of notes whose panel was pressed, on time or not, 0..1. @param {Counts} counts */
 export const panelShare = ({ hit, early, late, miss }) => (hit + early + late) / Math.max(hit + early + late + miss, 1);
 
-/** The score, 0..1: an early or late press is worth half a hit, a wrong one counts as a note that was missed. @param {Counts} counts */
+/**
+ * The score, 0..1: an early or late press is worth half a hit, a wrong one counts as a note that was missed.
+ * @param {Counts} counts
+ */
 export function scoreShare({ hit, early, late, miss, wrong }) {
   return (hit + (early + late) / 2) / Math.max(hit + early + late + miss + wrong, 1);
 }
@@ -116,7 +138,10 @@ export function streakOf(days, today) {
   return { now: all.length && number(today) - all[all.length - 1] <= 1 ? run : 0, most };
 }
 
-/** @typedef {{from: number, to: number, misses: number, rate: number, passed: boolean}} Missed whole measures, in beats; rate: to begin at; passed: some time before */
+/**
+ * @typedef {{from: number, to: number, misses: number, rate: number, passed: boolean}} Missed
+ * whole measures, in beats; rate: to begin at; passed: some time before
+ */
 
 /**
  * Stretches whose rows were missed the last time, the most missed first; each with the speed at which all of it was passed last.
@@ -130,7 +155,8 @@ export function missedOf(record, rows, most = 6) {
     if (!own?.missed) continue;
     const measure = Math.floor(beat / 4 + 1e-6);
     const last = out[out.length - 1];
-    if (last && measure <= last.to / 4 + APART - 1 + 1e-6 && measure < last.from / 4 + LONGEST) [last.to, last.misses] = [4 * (measure + 1), last.misses + 1];
+    if (last && measure <= last.to / 4 + APART - 1 + 1e-6 && measure < last.from / 4 + LONGEST)
+      [last.to, last.misses] = [4 * (measure + 1), last.misses + 1];
     else out.push({ from: 4 * measure, to: 4 * (measure + 1), misses: 1, rate: FIRST, passed: false });
   }
   for (const one of out) {
@@ -160,7 +186,9 @@ export function missesThrough(record, rows, most = 48) {
       sum.misses += own.misses;
     }
   }
-  return sums.map((feet) => /** @type {[number, number]} */ (feet.map(({ tries, misses }) => Math.round((100 * misses) / Math.max(tries, 1)))));
+  return sums.map(
+    (feet) => /** @type {[number, number]} */ (feet.map(({ tries, misses }) => Math.round((100 * misses) / Math.max(tries, 1)))),
+  );
 }
 
 /**
@@ -172,7 +200,10 @@ export function coachRate(rate, share, goal) {
   return clamp(Math.round(100 * (rate + step)) / 100, LOWEST, Math.max(goal, LOWEST));
 }
 
-/** Of two records of one chart. Taking a file in twice changes nothing. @param {PracticeRecord} mine @param {PracticeRecord} theirs */
+/**
+ * Of two records of one chart. Taking a file in twice changes nothing.
+ * @param {PracticeRecord} mine @param {PracticeRecord} theirs
+ */
 export function merged(mine, theirs) {
   const played = (/** @type {Day} */ day) => day.hit + day.early + day.late + day.miss + day.wrong;
   const days = new Map(mine.days.map((one) => [one.day, one]));
@@ -180,7 +211,16 @@ export function merged(mine, theirs) {
     const own = days.get(one.day);
     if (!own || played(one) > played(own)) days.set(one.day, one);
   }
-  const out = { ...mine, days: [...days.values()].sort((a, b) => (a.day < b.day ? -1 : 1)).slice(-MOST.days), rows: { ...mine.rows }, best: { ...mine.best }, scores: { ...mine.scores }, plays: { ...mine.plays }, loops: [...mine.loops], top: Math.max(mine.top, theirs.top) };
+  const out = {
+    ...mine,
+    days: [...days.values()].sort((a, b) => (a.day < b.day ? -1 : 1)).slice(-MOST.days),
+    rows: { ...mine.rows },
+    best: { ...mine.best },
+    scores: { ...mine.scores },
+    plays: { ...mine.plays },
+    loops: [...mine.loops],
+    top: Math.max(mine.top, theirs.top),
+  };
   for (const [row, one] of Object.entries(theirs.rows)) if (one.tries > (out.rows[row]?.tries ?? 0)) out.rows[row] = one;
   for (const kind of /** @type {const} */ (["best", "scores"])) {
     for (const [where, value] of Object.entries(theirs[kind])) out[kind][where] = Math.max(out[kind][where] ?? 0, value);
@@ -192,37 +232,65 @@ export function merged(mine, theirs) {
 }
 
 /** @param {unknown} value @returns {Record<string, unknown>} */
-const table = (value) => (value && typeof value === "object" && !Array.isArray(value) ? /** @type {Record<string, unknown>} */ (value) : {});
+const table = (value) =>
+  value && typeof value === "object" && !Array.isArray(value) ? /** @type {Record<string, unknown>} */ (value) : {};
 /** @param {unknown} value @param {number} low @param {number} high @returns {value is number} */
 const within = (value, low, high) => typeof value === "number" && Number.isFinite(value) && value >= low && value <= high;
 /** @param {unknown} value @returns {value is number} */
 const count = (value) => Number.isInteger(value) && within(value, 0, 1e9);
 
-/** What may be kept of anything at all: each value that is as it must be. @param {unknown} value @returns {PracticeRecord} */
+/**
+ * What may be kept of anything at all: each value that is as it must be.
+ * @param {unknown} value @returns {PracticeRecord}
+ */
 export function validRecord(value) {
   const { days, rows, loops, best, scores, plays, top } = table(value);
   const list = (/** @type {unknown} */ some, /** @type {number} */ most) => (Array.isArray(some) ? some.slice(-most) : []);
   const out = emptyRecord();
   if (within(top, 0, 100)) out.top = top;
-  out.days = list(days, MOST.days).map(table).flatMap((one) => {
-    const { day, feet } = one;
-    if (typeof day !== "string" || !/^\d{4}-\d\d-\d\d$/.test(day) || !Number.isFinite(Date.parse(day))) return [];
-    const counts = ["hit", "early", "late", "miss", "wrong"].map((name) => one[name]);
-    const bins = Array.isArray(feet) && feet.length === 2 && feet.every((foot) => Array.isArray(foot) && foot.length === BINS && foot.every(count));
-    if (!counts.every(count) || !bins) return [];
-    const [hit, early, late, miss, wrong] = /** @type {number[]} */ (counts);
-    return [{ day, hit, early, late, miss, wrong, feet: /** @type {[number[], number[]]} */ (feet) }];
-  });
+  out.days = list(days, MOST.days)
+    .map(table)
+    .flatMap((one) => {
+      const { day, feet } = one;
+      if (typeof day !== "string" || !/^\d{4}-\d\d-\d\d$/.test(day) || !Number.isFinite(Date.parse(day))) return [];
+      const counts = ["hit", "early", "late", "miss", "wrong"].map((name) => one[name]);
+      const bins =
+        Array.isArray(feet) &&
+        feet.length === 2 &&
+        feet.every((foot) => Array.isArray(foot) && foot.length === BINS && foot.every(count));
+      if (!counts.every(count) || !bins) return [];
+      const [hit, early, late, miss, wrong] = /** @type {number[]} */ (counts);
+      return [{ day, hit, early, late, miss, wrong, feet: /** @type {[number[], number[]]} */ (feet) }];
+    });
   for (const [row, one] of Object.entries(table(rows)).slice(0, MOST.rows)) {
     const { tries, misses, timed, sum, missed, rate } = table(one);
-    if (!/^\d{1,6}$/.test(row) || !count(tries) || !count(misses) || !count(timed) || !within(sum, -1e9, 1e9) || typeof missed !== "boolean" || !within(rate, 0, 200)) continue;
+    if (
+      !/^\d{1,6}$/.test(row) ||
+      !count(tries) ||
+      !count(misses) ||
+      !count(timed) ||
+      !within(sum, -1e9, 1e9) ||
+      typeof missed !== "boolean" ||
+      !within(rate, 0, 200)
+    )
+      continue;
     out.rows[row] = { tries, misses, timed, sum, missed, rate };
   }
   for (const { name, from, to, rate } of list(loops, MOST.loops).map(table)) {
-    if (typeof name !== "string" || !within(from, 0, MOST.beat) || !within(to, 0, MOST.beat) || to <= from || !within(rate, 25, 200)) continue;
+    if (
+      typeof name !== "string" ||
+      !within(from, 0, MOST.beat) ||
+      !within(to, 0, MOST.beat) ||
+      to <= from ||
+      !within(rate, 25, 200)
+    )
+      continue;
     out.loops.push({ name: name.slice(0, MOST.name), from, to, rate });
   }
-  for (const [kind, some, low, high] of /** @type {["best" | "scores", unknown, number, number][]} */ ([["best", best, 25, 200], ["scores", scores, 0, 100]])) {
+  for (const [kind, some, low, high] of /** @type {["best" | "scores", unknown, number, number][]} */ ([
+    ["best", best, 25, 200],
+    ["scores", scores, 0, 100],
+  ])) {
     for (const [where, value] of Object.entries(table(some)).slice(0, MOST.best)) {
       if (PART.test(where) && within(value, low, high)) out[kind][where] = value;
     }
@@ -238,12 +306,20 @@ export function validRecord(value) {
 /** A file of the records of charts. @param {Record<string, PracticeRecord>} charts */
 export const toFile = (charts) => JSON.stringify({ format: FORMAT, version: 1, charts });
 
-/** The records in such a file; null for a text that is none. @param {string} text @returns {Map<string, PracticeRecord> | null} */
+/**
+ * The records in such a file; null for a text that is none.
+ * @param {string} text @returns {Map<string, PracticeRecord> | null}
+ */
 export function fromFile(text) {
   try {
     const { format, version, charts } = table(JSON.parse(text));
     if (format !== FORMAT || version !== 1) return null;
-    return new Map(Object.entries(table(charts)).filter(([id]) => id.length <= MOST.id).slice(0, MOST.charts).map(([id, one]) => [id, validRecord(one)]));
+    return new Map(
+      Object.entries(table(charts))
+        .filter(([id]) => id.length <= MOST.id)
+        .slice(0, MOST.charts)
+        .map(([id, one]) => [id, validRecord(one)]),
+    );
   } catch {
     return null;
   }

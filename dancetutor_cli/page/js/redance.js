@@ -115,7 +115,10 @@ export class Redance {
     return out;
   }
 
-  /** The panel under a foot after row k with the author's feet; -1 if it has not stepped yet. @param {number} k @param {number} foot */
+  /**
+   * The panel under a foot after row k with the author's feet; -1 if it has not stepped yet.
+   * @param {number} k @param {number} foot
+   */
   standsAfter(k, foot) {
     for (let i = k; i >= 0; --i) {
       const step = this.chart.rows[i].steps.find((one) => this.limbOf(one) === foot);
@@ -148,7 +151,10 @@ export class Redance {
     }
   }
 
-  /** Where an ankle is above a panel; where it is, if the foot has not stepped. @param {number} panel @param {[number, number, number]} now @returns {[number, number, number]} */
+  /**
+   * Where an ankle is above a panel; where it is, if the foot has not stepped.
+   * @param {number} panel @param {[number, number, number]} now @returns {[number, number, number]}
+   */
   over(panel, now) {
     if (panel < 0) return [now[0], now[1], now[2]];
     const { panels, centre, width } = this.doc.pad;

@@ -19,7 +19,9 @@ export function resultsPanel(app) {
   const body = el("div");
   const show = () => {
     const today = app.record.days.find(({ day }) => day === dayOf(new Date()));
-    const parts = app.record.days.length ? [summary(app), histogram(app, today), missed(app), through(app), rowsOf(app), days(app)] : [el("p", {}, t("noResults"))];
+    const parts = app.record.days.length
+      ? [summary(app), histogram(app, today), missed(app), through(app), rowsOf(app), days(app)]
+      : [el("p", {}, t("noResults"))];
     body.replaceChildren(...parts.filter((part) => part !== null));
   };
   app.listeners.add((what) => {
@@ -33,7 +35,13 @@ export function resultsPanel(app) {
 /** A file of the results of all charts, to save and to take in. @param {import("./app.js").App} app */
 export function recordPart(app) {
   const { t, practice } = app;
-  const file = el("input", { type: "file", accept: "application/json,.json", id: "record-file", hidden: true, "aria-label": t("recordLoad") });
+  const file = el("input", {
+    type: "file",
+    accept: "application/json,.json",
+    id: "record-file",
+    hidden: true,
+    "aria-label": t("recordLoad"),
+  });
   const message = el("p", { class: "hint", role: "status", id: "record-message" });
   const load = el("button", { type: "button", onclick: () => file.click() }, t("recordLoad"));
   const save = el("button", { type: "button", id: "record-save", onclick: () => {
@@ -46,7 +54,15 @@ export function recordPart(app) {
     if (one) message.textContent = await takeFile(app, one);
     file.value = "";
   });
-  return el("section", {}, el("h3", {}, t("recordTitle")), el("p", { class: "group" }, save, load), file, message, el("p", { class: "hint" }, t("recordHint")));
+  return el(
+    "section",
+    {},
+    el("h3", {}, t("recordTitle")),
+    el("p", { class: "group" }, save, load),
+    file,
+    message,
+    el("p", { class: "hint" }, t("recordHint")),
+  );
 }
 
 /** Take in a file of records; what came of it, in words. @param {import("./app.js").App} app @param {File} file */
@@ -73,11 +89,22 @@ function summary(app) {
   const counts = countsOf(app);
   counts.show(one);
   const notes = one.hit + one.early + one.late + one.miss;
-  return el("section", { class: "today" }, el("h3", {}, t("today", { notes })), el("p", { class: "scored" }, counts.share, el("span", {}, t("score"))),
-    counts.bar, counts.shares, counts.row, el("p", { class: "hint" }, row));
+  return el(
+    "section",
+    { class: "today" },
+    el("h3", {}, t("today", { notes })),
+    el("p", { class: "scored" }, counts.share, el("span", {}, t("score"))),
+    counts.bar,
+    counts.shares,
+    counts.row,
+    el("p", { class: "hint" }, row),
+  );
 }
 
-/** Errors of left and right foot, of today if anything was played, else of all days. @param {import("./app.js").App} app @param {import("./record.js").Day} [today] */
+/**
+ * Errors of left and right foot, of today if anything was played, else of all days.
+ * @param {import("./app.js").App} app @param {import("./record.js").Day} [today]
+ */
 function histogram(app, today) {
   const some = today ? [today] : app.record.days;
   const feet = [0, 1].map((foot) => Array.from({ length: BINS }, (_, k) => some.reduce((sum, day) => sum + day.feet[foot][k], 0)));
@@ -93,17 +120,30 @@ export function timing(app, feet, title, means) {
   const about = feet.map((counts, foot) => {
     const all = counts.reduce((a, b) => a + b, 0);
     const mean = means?.[foot] ?? counts.reduce((sum, n, k) => sum + n * BIN * (k - (BINS >> 1)), 0) / Math.max(all, 1);
-    return [t(foot ? "rightMean" : "leftMean", { count: all }), all ? t("onAverage", { how: lateText(app, mean) }) : ""].filter(Boolean).join(", ");
+    return [t(foot ? "rightMean" : "leftMean", { count: all }), all ? t("onAverage", { how: lateText(app, mean) }) : ""]
+      .filter(Boolean)
+      .join(", ");
   });
   const edge = BIN * (BINS >> 1);
   return el("figure", {}, el("figcaption", {}, title),
     bars(feet, doc.style.limbs, `${about.join("; ")}`, undefined, "timing"),
-    el("p", { class: "ends", "aria-hidden": "true" }, el("span", {}, t("early", { ms: edge })), el("span", {}, "0"), el("span", {}, t("late", { ms: edge }))),
-    el("p", { class: "legend" }, ...about.map((text, foot) => {
-      const sign = el("span", { "aria-hidden": "true" }, "■ ");
-      sign.style.color = doc.style.limbs[foot];
-      return el("span", {}, sign, text, " ");
-    })));
+    el(
+      "p",
+      { class: "ends", "aria-hidden": "true" },
+      el("span", {}, t("early", { ms: edge })),
+      el("span", {}, "0"),
+      el("span", {}, t("late", { ms: edge })),
+    ),
+    el(
+      "p",
+      { class: "legend" },
+      ...about.map((text, foot) => {
+        const sign = el("span", { "aria-hidden": "true" }, "■ ");
+        sign.style.color = doc.style.limbs[foot];
+        return el("span", {}, sign, text, " ");
+      }),
+    ),
+  );
 }
 
 /** @param {import("./app.js").App} app */
@@ -111,10 +151,32 @@ function missed(app) {
   const { t, record, chart } = app;
   const list = missedOf(record, chart.rows);
   if (!list.length) return el("p", {}, t("nothingMissed"));
-  return el("section", {}, el("h3", {}, t("missedTitle")), el("ol", { class: "cards" }, ...list.map((one) => el("li", {},
-    el("button", { type: "button", class: "card missed", onclick: () => void app.practice.coach.start(one) },
-      el("strong", {}, el("span", {}, stretch(t, one.from / 4, one.to / 4))), el("span", { class: "figure" }, t("startsAt", { rate: Math.round(100 * one.rate) })),
-      el("span", { class: "text" }, `${t("missedRows", { count: one.misses })} · ${t(one.passed ? "missedPassed" : "missedNew")}`))))));
+  return el(
+    "section",
+    {},
+    el("h3", {}, t("missedTitle")),
+    el(
+      "ol",
+      { class: "cards" },
+      ...list.map((one) =>
+        el(
+          "li",
+          {},
+          el(
+            "button",
+            { type: "button", class: "card missed", onclick: () => void app.practice.coach.start(one) },
+            el("strong", {}, el("span", {}, stretch(t, one.from / 4, one.to / 4))),
+            el("span", { class: "figure" }, t("startsAt", { rate: Math.round(100 * one.rate) })),
+            el(
+              "span",
+              { class: "text" },
+              `${t("missedRows", { count: one.misses })} · ${t(one.passed ? "missedPassed" : "missedNew")}`,
+            ),
+          ),
+        ),
+      ),
+    ),
+  );
 }
 
 /** Where in the song notes were missed, by foot. @param {import("./app.js").App} app */
@@ -123,9 +185,25 @@ function through({ t, record, chart, doc }) {
   const last = Math.floor((chart.rows[chart.rows.length - 1]?.beat ?? 0) / 4 + 1e-6);
   const title = t("throughTitle");
   const most = TOPS.find((top) => top >= Math.max(...shares.flat())) ?? 100;
-  return el("figure", {}, el("figcaption", {}, title), el("p", { class: "ends", "aria-hidden": "true" }, el("span", {}, `${most} %`)),
-    bars([0, 1].map((foot) => shares.map((one) => one[foot])), doc.style.limbs, title, most, "through"),
-    el("p", { class: "ends", "aria-hidden": "true" }, el("span", {}, t("oneMeasure", { from: 0 })), el("span", {}, t("oneMeasure", { from: last }))));
+  return el(
+    "figure",
+    {},
+    el("figcaption", {}, title),
+    el("p", { class: "ends", "aria-hidden": "true" }, el("span", {}, `${most} %`)),
+    bars(
+      [0, 1].map((foot) => shares.map((one) => one[foot])),
+      doc.style.limbs,
+      title,
+      most,
+      "through",
+    ),
+    el(
+      "p",
+      { class: "ends", "aria-hidden": "true" },
+      el("span", {}, t("oneMeasure", { from: 0 })),
+      el("span", {}, t("oneMeasure", { from: last })),
+    ),
+  );
 }
 
 /** Rows that went wrong most often. @param {import("./app.js").App} app */
@@ -136,12 +214,35 @@ function rowsOf(app) {
     .filter(({ own, mean }) => own.misses > 0 || Math.abs(mean) > OFF)
     .sort((a, b) => b.own.misses / b.own.tries - a.own.misses / a.own.tries || Math.abs(b.mean) - Math.abs(a.mean)).slice(0, ROWS);
   if (!worst.length) return null;
-  const cells = worst.map(({ row, own, mean }) => el("tr", {},
-    el("th", { scope: "row" }, el("button", { type: "button", class: "link", onclick: () => app.goTo(row.steps[0].note) }, placeInMeasure(t, row.beat))),
-    el("td", {}, row.steps.map(({ limb }) => (limb === 0 || limb === 1 ? t(limb ? "footR" : "footL") : "")).join("")),
-    el("td", {}, t("missedOf", { misses: own.misses, tries: own.tries })), el("td", {}, own.timed ? lateText(app, mean) : "")));
-  return el("section", {}, el("h3", {}, t("rowsTitle")), el("table", { class: "rows" }, el("thead", {}, el("tr", {},
-    ...["rowsPlace", "rowsFoot", "rowsMissed", "rowsMean"].map((name) => el("th", { scope: "col" }, t(name))))), el("tbody", {}, ...cells)));
+  const cells = worst.map(({ row, own, mean }) =>
+    el(
+      "tr",
+      {},
+      el(
+        "th",
+        { scope: "row" },
+        el("button", { type: "button", class: "link", onclick: () => app.goTo(row.steps[0].note) }, placeInMeasure(t, row.beat)),
+      ),
+      el("td", {}, row.steps.map(({ limb }) => (limb === 0 || limb === 1 ? t(limb ? "footR" : "footL") : "")).join("")),
+      el("td", {}, t("missedOf", { misses: own.misses, tries: own.tries })),
+      el("td", {}, own.timed ? lateText(app, mean) : ""),
+    ),
+  );
+  return el(
+    "section",
+    {},
+    el("h3", {}, t("rowsTitle")),
+    el(
+      "table",
+      { class: "rows" },
+      el(
+        "thead",
+        {},
+        el("tr", {}, ...["rowsPlace", "rowsFoot", "rowsMissed", "rowsMean"].map((name) => el("th", { scope: "col" }, t(name)))),
+      ),
+      el("tbody", {}, ...cells),
+    ),
+  );
 }
 
 /** The score by day, where there are days to compare. @param {import("./app.js").App} app */
@@ -150,6 +251,16 @@ function days({ t, record }) {
   if (some.length < 2) return null;
   const shares = some.map((day) => Math.round(100 * scoreShare(day)));
   const about = some.map((one, k) => `${one.day}: ${shares[k]} %`).join("; ");
-  return el("figure", {}, el("figcaption", {}, t("daysTitle")), bars([shares], ["#8f98d8"], about, 100),
-    el("p", { class: "ends", "aria-hidden": "true" }, el("span", {}, `${some[0].day}: ${shares[0]} %`), el("span", {}, `${some[some.length - 1].day}: ${shares[shares.length - 1]} %`)));
+  return el(
+    "figure",
+    {},
+    el("figcaption", {}, t("daysTitle")),
+    bars([shares], ["#8f98d8"], about, 100),
+    el(
+      "p",
+      { class: "ends", "aria-hidden": "true" },
+      el("span", {}, `${some[0].day}: ${shares[0]} %`),
+      el("span", {}, `${some[some.length - 1].day}: ${shares[shares.length - 1]} %`),
+    ),
+  );
 }

@@ -11,7 +11,14 @@ const NOTABLE = 50; // %: the least that a first play is called a best score for
 /** The score while it plays; the panel of playing along says it to readers. @param {import("./app.js").App} app */
 export function standing(app) {
   const { share, shares, row, bar, show } = countsOf(app);
-  const box = el("div", { class: "standing", "aria-hidden": "true" }, el("p", { class: "scored" }, share, el("span", {}, app.t("score"))), bar, shares, row);
+  const box = el(
+    "div",
+    { class: "standing", "aria-hidden": "true" },
+    el("p", { class: "scored" }, share, el("span", {}, app.t("score"))),
+    bar,
+    shares,
+    row,
+  );
   app.listeners.add((what) => {
     if (what === "frame") return;
     box.hidden = !app.practice.along || app.practice.over !== null;
@@ -21,7 +28,10 @@ export function standing(app) {
   return box;
 }
 
-/** The same in a line above the lanes, where there is no room for more: score and misses, or the last passes of a loop. @param {import("./app.js").App} app */
+/**
+ * The same in a line above the lanes, where there is no room for more: score and misses, or the last passes of a loop.
+ * @param {import("./app.js").App} app
+ */
 export function slimStanding(app) {
   const share = el("b", {}, "");
   const rest = el("span", {}, "");
@@ -52,12 +62,48 @@ export function resultCard(app) {
   const feet = el("div", { class: "feet" });
   const missed = () => missedOf(app.record, app.chart.rows)[0];
   const again = el("button", { type: "button", id: "again-play", onclick: () => void app.begin() }, t("again-play"));
-  const slow = el("button", { type: "button", id: "again-missed", onclick: () => {
-    practice.over = null;
-    void practice.coach.start(missed());
-  } }, t("again-missed"));
-  const close = el("button", { type: "button", class: "sign shut", "aria-label": t("close"), title: t("close"), onclick: () => { practice.over = null; app.tell("hits"); } }, "✕");
-  const card = el("section", { class: "result", "aria-label": t("tab-results"), hidden: true }, el("h2", {}, t("tab-results")), part, share, el("p", { class: "scored" }, t("score")), bar, shares, best, row, mean, feet, el("p", { class: "group" }, again, slow), close);
+  const slow = el(
+    "button",
+    {
+      type: "button",
+      id: "again-missed",
+      onclick: () => {
+        practice.over = null;
+        void practice.coach.start(missed());
+      },
+    },
+    t("again-missed"),
+  );
+  const close = el(
+    "button",
+    {
+      type: "button",
+      class: "sign shut",
+      "aria-label": t("close"),
+      title: t("close"),
+      onclick: () => {
+        practice.over = null;
+        app.tell("hits");
+      },
+    },
+    "✕",
+  );
+  const card = el(
+    "section",
+    { class: "result", "aria-label": t("tab-results"), hidden: true },
+    el("h2", {}, t("tab-results")),
+    part,
+    share,
+    el("p", { class: "scored" }, t("score")),
+    bar,
+    shares,
+    best,
+    row,
+    mean,
+    feet,
+    el("p", { class: "group" }, again, slow),
+    close,
+  );
   app.listeners.add((what) => {
     if (what === "frame") return;
     const { over } = practice;
@@ -65,7 +111,9 @@ export function resultCard(app) {
     if (!over) return;
     show(over);
     part.textContent = partText(app, over);
-    mean.textContent = [meanText(app, over).replace(/^\((.*)\)$/, "$1"), t("longestRun", { notes: practice.longest })].filter(Boolean).join(" · ");
+    mean.textContent = [meanText(app, over).replace(/^\((.*)\)$/, "$1"), t("longestRun", { notes: practice.longest })]
+      .filter(Boolean)
+      .join(" · ");
     const { top } = app.record;
     const better = top > practice.topBefore && (practice.topBefore > 0 || top >= NOTABLE); // a first try that went badly is no record
     best.textContent = better ? t("bestNew") : top ? t("bestPlay", { percent: top }) : "";
@@ -78,7 +126,10 @@ export function resultCard(app) {
   return card;
 }
 
-/** What was played, if it was not the whole song. @param {import("./app.js").App} app @param {import("./judge.js").Tally} over */
+/**
+ * What was played, if it was not the whole song.
+ * @param {import("./app.js").App} app @param {import("./judge.js").Tally} over
+ */
 function partText({ t, chart, practice }, { hit, early, late, miss }) {
   const { from } = practice.judge;
   if (from <= chart.first) return "";
@@ -107,8 +158,15 @@ function feetPart(app) {
 /** @param {import("./app.js").App} app */
 export function chips(app) {
   const { t, practice } = app;
-  const foot = el("button", { type: "button", class: "chip", id: "chip-foot", title: t("footChip"), onclick: () => practice.setFoot("both") });
-  const begin = (/** @type {boolean} */ waits) => { // a loop is played from its start, a song goes on
+  const foot = el("button", {
+    type: "button",
+    class: "chip",
+    id: "chip-foot",
+    title: t("footChip"),
+    onclick: () => practice.setFoot("both"),
+  });
+  const begin = (/** @type {boolean} */ waits) => {
+    // a loop is played from its start, a song goes on
     const watched = !practice.along;
     practice.setWait(waits);
     if (!watched) return;
@@ -116,12 +174,25 @@ export function chips(app) {
     else practice.setAlong(true);
   };
   const join = el("button", { type: "button", class: "chip main", id: "chip-along", onclick: () => begin(false) }, t("along"));
-  const loop = el("button", { type: "button", class: "chip loop", id: "chip-loop", title: t("noLoop"), onclick: () => app.setLoop(null, null) },
-    t("loopName-bar"), el("span", { "aria-hidden": "true" }, " ✕"));
-  const slow = el("button", { type: "button", class: "chip main", id: "chip-slow", onclick: () => {
-    practice.lost = 0;
-    app.setRate(FIRST);
-  } }, t("slowerTo", { rate: 100 * FIRST }));
+  const loop = el(
+    "button",
+    { type: "button", class: "chip loop", id: "chip-loop", title: t("noLoop"), onclick: () => app.setLoop(null, null) },
+    t("loopName-bar"),
+    el("span", { "aria-hidden": "true" }, " ✕"),
+  );
+  const slow = el(
+    "button",
+    {
+      type: "button",
+      class: "chip main",
+      id: "chip-slow",
+      onclick: () => {
+        practice.lost = 0;
+        app.setRate(FIRST);
+      },
+    },
+    t("slowerTo", { rate: 100 * FIRST }),
+  );
   const wait = el("button", { type: "button", class: "chip", id: "chip-wait", onclick: () => begin(true) }, t("wait"));
   const row = el("div", { class: "chips" }, join, wait, slow, foot, loop);
   const show = () => {

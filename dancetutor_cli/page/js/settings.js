@@ -13,19 +13,43 @@ export const FEET = ["both", "left", "right"];
 export const HELPS = ["all", "tricky", "none", "auto"];
 
 const DEFAULTS = {
-  language: "", camera: "back", speed: 1, /** "auto": where there is no music */ claps: "auto", metronome: false, countIn: true, leadBeats: 4, ramp: false,
-  help: "all", latency: 0, sight: 0, volume: 0.9, ...FIRST_VIEW,
+  language: "",
+  camera: "back",
+  speed: 1,
+  /** "auto": where there is no music */ claps: "auto",
+  metronome: false,
+  countIn: true,
+  leadBeats: 4,
+  ramp: false,
+  help: "all",
+  latency: 0,
+  sight: 0,
+  volume: 0.9,
+  ...FIRST_VIEW,
   /** @type {Record<string, string[]>} keys by number of panels */ keys: {},
   /** @type {Record<string, (number | null)[]>} buttons by pad and number of panels */ pads: {},
   /** @type {Record<string, (number | null)[]>} buttons for Start and Select by pad */ controls: {},
 };
 
 /** Lowest and highest value of settings that an old page, or a hand, may have stored otherwise. */
-const LIMITS = /** @type {["yaw" | "pitch" | "zoom" | "speed" | "volume" | "latency" | "sight" | "leadBeats", number, number][]} */ (
-  [["yaw", -360, 360], ["pitch", 2, 88], ["zoom", 0.5, 3], ["speed", 0.3, 4], ["volume", 0, 1], ["latency", -0.2, 0.4], ["sight", -0.2, 0.4], ["leadBeats", 1, 16]]);
+const LIMITS =
+  /** @type {["yaw" | "pitch" | "zoom" | "speed" | "volume" | "latency" | "sight" | "leadBeats", number, number][]} */ ([
+    ["yaw", -360, 360],
+    ["pitch", 2, 88],
+    ["zoom", 0.5, 3],
+    ["speed", 0.3, 4],
+    ["volume", 0, 1],
+    ["latency", -0.2, 0.4],
+    ["sight", -0.2, 0.4],
+    ["leadBeats", 1, 16],
+  ]);
 
 /** What may be chosen among. */
-const CHOICES = /** @type {["claps" | "camera" | "help", string[]][]} */ ([["claps", ["auto", "on", "off"]], ["camera", CAMERAS], ["help", HELPS]]);
+const CHOICES = /** @type {["claps" | "camera" | "help", string[]][]} */ ([
+  ["claps", ["auto", "on", "off"]],
+  ["camera", CAMERAS],
+  ["help", HELPS],
+]);
 
 /** @typedef {typeof DEFAULTS} Settings */
 
@@ -35,7 +59,8 @@ export function loadSettings() {
   const out = structuredClone(DEFAULTS);
   for (const [name, value] of Object.entries(DEFAULTS)) {
     const own = Object.hasOwn(stored, name) ? stored[name] : undefined;
-    if (typeof own === typeof value && typeof own !== "object" && !(typeof own === "number" && !Number.isFinite(own))) Object.assign(out, { [name]: own });
+    if (typeof own === typeof value && typeof own !== "object" && !(typeof own === "number" && !Number.isFinite(own)))
+      Object.assign(out, { [name]: own });
   }
   for (const [name, low, high] of LIMITS) out[name] = clamp(out[name], low, high);
   out.leadBeats = Math.round(out.leadBeats);
@@ -59,7 +84,11 @@ const isKey = (code) => typeof code === "string" && /^\w{1,40}$/.test(code);
  */
 function valid(table, is, holds = () => true) {
   if (!table || typeof table !== "object") return {};
-  return Object.fromEntries(Object.entries(table).filter(([name, list]) => Array.isArray(list) && list.length <= 32 && list.every(is) && holds(name, list)));
+  return Object.fromEntries(
+    Object.entries(table).filter(
+      ([name, list]) => Array.isArray(list) && list.length <= 32 && list.every(is) && holds(name, list),
+    ),
+  );
 }
 
 /** Forget the settings. @param {boolean} all and what was ticked off and given in every chart */
@@ -77,12 +106,19 @@ export function saveSettings(settings) {
   write(KEY, settings);
 }
 
-/** @typedef {{ticked: string[], feet: [number, number, number][], foot: string}} Notes of one chart: findings ticked off, feet given, the foot that is practised */
+/**
+ * @typedef {{ticked: string[], feet: [number, number, number][], foot: string}} Notes
+ * of one chart: findings ticked off, feet given, the foot that is practised
+ */
 
 /** @param {string} chart @returns {Notes} */
 export function loadNotes(chart) {
   const stored = read(`${KEY}:${chart}`);
-  const feet = Array.isArray(stored.feet) ? stored.feet.filter((one) => Array.isArray(one) && one.length === 3 && one.every(Number.isInteger) && (one[2] === 0 || one[2] === 1)) : [];
+  const feet = Array.isArray(stored.feet)
+    ? stored.feet.filter(
+        (one) => Array.isArray(one) && one.length === 3 && one.every(Number.isInteger) && (one[2] === 0 || one[2] === 1),
+      )
+    : [];
   const ticked = Array.isArray(stored.ticked) ? stored.ticked.filter((one) => typeof one === "string") : [];
   const foot = FEET.find((one) => one === stored.foot) ?? FEET[0];
   return { ticked, feet: /** @type {[number, number, number][]} */ (feet), foot };
@@ -101,7 +137,10 @@ export const loadRecord = (chart) => validRecord(read(RECORD + chart));
 /** @param {string} chart @param {import("./record.js").PracticeRecord} record */
 export const saveRecord = (chart, record) => write(RECORD + chart, record);
 
-/** The records of all charts that this browser keeps. @returns {Record<string, import("./record.js").PracticeRecord>} */
+/**
+ * The records of all charts that this browser keeps.
+ * @returns {Record<string, import("./record.js").PracticeRecord>}
+ */
 export function allRecords() {
   try {
     const ids = Object.keys(localStorage).filter((name) => name.startsWith(RECORD)).map((name) => name.slice(RECORD.length));
@@ -111,7 +150,10 @@ export function allRecords() {
   }
 }
 
-/** Records of a file are added to those that are kept. @param {Map<string, import("./record.js").PracticeRecord>} records */
+/**
+ * Records of a file are added to those that are kept.
+ * @param {Map<string, import("./record.js").PracticeRecord>} records
+ */
 export function takeRecords(records) {
   for (const [id, one] of records) saveRecord(id, merged(loadRecord(id), one));
 }

@@ -73,7 +73,10 @@ export class Sound {
     this.music = await offline.decodeAudioData(data);
   }
 
-  /** Forget what was to be heard; what follows is a run of the clock, or silence. @param {import("./clock.js").Run | null} run */
+  /**
+   * Forget what was to be heard; what follows is a run of the clock, or silence.
+   * @param {import("./clock.js").Run | null} run
+   */
   follow(run) {
     for (const source of this.sources) source.stop();
     this.sources.clear();
@@ -84,7 +87,10 @@ export class Sound {
     this.due = run.at;
   }
 
-  /** Prepare what is due soon; to be called for every picture. @param {number} hold second that the clock does not pass */
+  /**
+   * Prepare what is due soon; to be called for every picture.
+   * @param {number} hold second that the clock does not pass
+   */
   pump(hold) {
     const { context, run } = this;
     if (!context || !run || context.state !== "running") return;
@@ -175,7 +181,8 @@ export function clicksOf(chart, wanted) {
     /** @type {Click[]} */
     const out = [];
     for (let k = lastUpTo(chart.rowSeconds, from) + 1; k < chart.rows.length && chart.rowSeconds[k] <= to; ++k) {
-      if (chart.rowSeconds[k] >= quietUntil && (claps || played(chart.rows[k]))) out.push({ second: chart.rowSeconds[k], pitch: CLAP, loudness: 0.55 });
+      if (chart.rowSeconds[k] >= quietUntil && (claps || played(chart.rows[k])))
+        out.push({ second: chart.rowSeconds[k], pitch: CLAP, loudness: 0.55 });
     }
     // A count-in may begin before the first beat.
     let k = from < chart.beats[0] ? Math.floor(chart.beatAt(from) + 1e-9) + 1 : lastUpTo(chart.beats, from) + 1;

@@ -52,9 +52,30 @@ export function showStartError(error) {
   const t = WORDS[/** @type {keyof typeof WORDS} */ ((navigator.language ?? "").slice(0, 2))] ?? WORDS.en;
   const old = !("DecompressionStream" in window);
   const why = String(error instanceof Error ? error.message : error).slice(0, 300);
-  const again = (/** @type {boolean} */ all) => { forget(all); location.reload(); };
-  const buttons = [el("button", { type: "button", onclick: () => again(false) }, t.settings),
-    el("button", { type: "button", onclick: () => again(true) }, t.all)];
-  document.getElementById("app")?.replaceChildren(el("main", { class: "failed", role: "alert" }, el("h1", {}, t.title),
-    ...(old ? [el("p", {}, t.old)] : [el("p", {}, t.why.replace("{why}", () => why)), el("p", {}, t.maybe), el("p", { class: "group" }, ...buttons)])));
+  const again = (/** @type {boolean} */ all) => {
+    forget(all);
+    location.reload();
+  };
+  const buttons = [
+    el("button", { type: "button", onclick: () => again(false) }, t.settings),
+    el("button", { type: "button", onclick: () => again(true) }, t.all),
+  ];
+  document.getElementById("app")?.replaceChildren(
+    el(
+      "main",
+      { class: "failed", role: "alert" },
+      el("h1", {}, t.title),
+      ...(old
+        ? [el("p", {}, t.old)]
+        : [
+            el(
+              "p",
+              {},
+              t.why.replace("{why}", () => why),
+            ),
+            el("p", {}, t.maybe),
+            el("p", { class: "group" }, ...buttons),
+          ]),
+    ),
+  );
 }

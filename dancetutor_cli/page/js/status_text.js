@@ -37,7 +37,10 @@ function keysText(app) {
 
 /** How a song went that is over. @param {import("./app.js").App} app @param {import("./judge.js").Tally} tally */
 function overText(app, tally) {
-  return app.t("songOver", { percent: Math.round(100 * scoreShare(tally)), counts: `${scoreText(app, tally)} ${meanText(app, tally)}`.trim() });
+  return app.t("songOver", {
+    percent: Math.round(100 * scoreShare(tally)),
+    counts: `${scoreText(app, tally)} ${meanText(app, tally)}`.trim(),
+  });
 }
 
 /** What the score is made of. @param {import("./app.js").App} app @param {import("./record.js").Counts} counts */
@@ -45,7 +48,10 @@ export function sharesText(app, counts) {
   return app.t("shares", { panel: Math.round(100 * panelShare(counts)), time: Math.round(100 * hitShare(counts)) });
 }
 
-/** How late presses came on average; "" without any. @param {import("./app.js").App} app @param {import("./judge.js").Tally} tally */
+/**
+ * How late presses came on average; "" without any.
+ * @param {import("./app.js").App} app @param {import("./judge.js").Tally} tally
+ */
 export function meanText(app, { sum, count }) {
   const mean = count ? Math.round((1000 * sum) / count) : 0;
   return count ? app.t(mean < 0 ? "meanEarly" : "meanLate", { ms: Math.abs(mean) }) : "";
@@ -59,11 +65,19 @@ function loopText(app) {
   const where = stretch(t, chart.beatAt(loop.a) / 4, chart.beatAt(loop.b) / 4);
   const percent = (/** @type {number} */ x) => Math.round(100 * x);
   const full = app.settings.ramp && rate >= 1 && practice.chosenRate >= 1;
-  const ramped = practice.coach.on || !app.settings.ramp ? "" : full ? t("rampFull", { rate: percent(rate) }) : speedStep(app) && t("ramped", { step: speedStep(app) });
+  const ramped =
+    practice.coach.on || !app.settings.ramp
+      ? ""
+      : full
+        ? t("rampFull", { rate: percent(rate) })
+        : speedStep(app) && t("ramped", { step: speedStep(app) });
   return [t("loopFrom", { where, passes: practice.passes }), ramped].filter(Boolean).join(" · ");
 }
 
-/** The last step that the ramp or the coach made: "speed 60 % → 65 %"; "" for none. @param {import("./app.js").App} app */
+/**
+ * The last step that the ramp or the coach made: "speed 60 % → 65 %"; "" for none.
+ * @param {import("./app.js").App} app
+ */
 function speedStep({ t, transport: { rate }, practice: { rateBefore } }) {
   return rateBefore && rateBefore !== rate ? t("speedStep", { from: Math.round(100 * rateBefore), to: Math.round(100 * rate) }) : "";
 }
@@ -74,13 +88,19 @@ export function lateText({ t }, ms) {
   return whole ? t(whole < 0 ? "early" : "late", { ms: Math.abs(whole) }) : t("exact");
 }
 
-/** How it went: the counts that are not 0. @param {import("./app.js").App} app @param {import("./judge.js").Tally} tally */
+/**
+ * How it went: the counts that are not 0.
+ * @param {import("./app.js").App} app @param {import("./judge.js").Tally} tally
+ */
 export function scoreText({ t }, tally) {
   const some = KINDS.filter((name) => tally[name] > 0);
   return (some.length ? some : [KINDS[0]]).map((name) => `${tally[name]} ${t(`verdict-${name}`)}`).join(", ");
 }
 
-/** The last passes of a loop and the step of the speed, for its count-in: "score 80 % → 100 %"; "" while it plays. @param {import("./app.js").App} app */
+/**
+ * The last passes of a loop and the step of the speed, for its count-in: "score 80 % → 100 %"; "" while it plays.
+ * @param {import("./app.js").App} app
+ */
 export function passedOf(app) {
   const { t, transport, practice } = app;
   if (!practice.along || !transport.counting) return "";

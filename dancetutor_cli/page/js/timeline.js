@@ -29,11 +29,16 @@ export class Timeline {
     this.loop = null;
     this.view = { from: about.start, to: about.end }; // seconds that are shown
     this.at = about.start; // the second that was drawn last
-    canvas.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      if (Math.abs(event.deltaX) > Math.abs(event.deltaY)) this.show(this.view.from + (event.deltaX / canvas.clientWidth) * this.shown, this.shown);
-      else this.zoom(event.deltaY < 0 ? 1 : -1, this.secondOf(event));
-    }, { passive: false });
+    canvas.addEventListener(
+      "wheel",
+      (event) => {
+        event.preventDefault();
+        if (Math.abs(event.deltaX) > Math.abs(event.deltaY))
+          this.show(this.view.from + (event.deltaX / canvas.clientWidth) * this.shown, this.shown);
+        else this.zoom(event.deltaY < 0 ? 1 : -1, this.secondOf(event));
+      },
+      { passive: false },
+    );
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     canvas.addEventListener("pointerup", (event) => this.up(event));
@@ -72,7 +77,8 @@ export class Timeline {
 
   /** What is played stays in sight: the strip goes on to the next part. @param {number} second */
   follow(second) {
-    if (second !== this.at && !this.grip && (second > this.view.to || second < this.view.from)) this.show(second - 0.05 * this.shown, this.shown);
+    if (second !== this.at && !this.grip && (second > this.view.to || second < this.view.from))
+      this.show(second - 0.05 * this.shown, this.shown);
     this.at = second;
   }
 
@@ -156,7 +162,10 @@ export class Timeline {
     canvas.setAttribute("aria-valuenow", second.toFixed(2));
   }
 
-  /** Where she faces: up is left, down is right. @param {(s: number) => number} x @param {number} top @param {number} height @param {number} ratio */
+  /**
+   * Where she faces: up is left, down is right.
+   * @param {(s: number) => number} x @param {number} top @param {number} height @param {number} ratio
+   */
   drawFacing(x, top, height, ratio) {
     const c = this.context;
     const middle = (top + height) / 2 + ratio;
@@ -175,11 +184,16 @@ export class Timeline {
     c.stroke();
   }
 
-  /** @param {(s: number) => number} x @param {number} bars @param {number} ratio @param {(passage: number) => boolean} chosen */
+  /**
+   * @param {(s: number) => number} x @param {number} bars @param {number} ratio
+   * @param {(passage: number) => boolean} chosen
+   */
   drawMarks(x, bars, ratio, chosen) {
     const c = this.context;
     let free = -Infinity;
-    const byPlace = this.doc.passages.map((/** @type {import("./doc.js").Passage} */ passage, /** @type {number} */ k) => ({ passage, k })).sort((one, two) => one.passage.start - two.passage.start);
+    const byPlace = this.doc.passages
+      .map((/** @type {import("./doc.js").Passage} */ passage, /** @type {number} */ k) => ({ passage, k }))
+      .sort((one, two) => one.passage.start - two.passage.start);
     for (const { passage, k } of byPlace) {
       c.fillStyle = chosen(k) ? "#fff" : "#ffb454";
       c.fillRect(x(passage.start), bars - 4 * ratio, x(passage.end) - x(passage.start), 3 * ratio);
@@ -206,7 +220,10 @@ export class Timeline {
     }
   }
 
-  /** @param {{a: number, b: number} | null} loop @param {(s: number) => number} x @param {number} height @param {number} ratio */
+  /**
+   * @param {{a: number, b: number} | null} loop @param {(s: number) => number} x @param {number} height
+   * @param {number} ratio
+   */
   drawLoop(loop, x, height, ratio) {
     if (!loop) return;
     const c = this.context;

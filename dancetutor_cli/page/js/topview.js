@@ -38,7 +38,16 @@ export function drawFromAbove(canvas, doc, shown) {
     c.translate(px, py);
     c.rotate((-flip * way * Math.PI) / 180);
     c.beginPath();
-    for (const [ax, ay] of [[0, -0.36], [0.32, 0], [0.11, 0], [0.11, 0.33], [-0.11, 0.33], [-0.11, 0], [-0.32, 0]]) c.lineTo(ax * side, ay * side);
+    for (const [ax, ay] of [
+      [0, -0.36],
+      [0.32, 0],
+      [0.11, 0],
+      [0.11, 0.33],
+      [-0.11, 0.33],
+      [-0.11, 0],
+      [-0.32, 0],
+    ])
+      c.lineTo(ax * side, ay * side);
     c.fillStyle = "rgba(180, 189, 214, 0.7)";
     c.fill();
     c.restore();
