@@ -1,4 +1,4 @@
-// The panel of playing along: keys and pads, one foot, help that fades, calibration, and how it went.
+// The panel of playing along: keys and pads, one foot, the amount of help, calibration, and results.
 
 import { calibrateDialog } from "./calibrate.js";
 import { el } from "./dom.js";
@@ -48,13 +48,13 @@ export function alongPanel(app) {
 }
 
 /**
- * Press a key or button for each panel in turn; whoever stops before the last one keeps what there was.
+ * Ask for a key or button for each panel in turn. Nothing changes if the user stops before the last one.
  * @param {import("./app.js").App} app @param {() => void} done
  */
 function assignDialog(app, done) {
   const { t, settings } = app;
   const before = structuredClone({ keys: settings.keys, pads: settings.pads, controls: settings.controls });
-  let all = false; // every panel has been given its key
+  let all = false; // whether every panel has got its key
   const text = el("p", { role: "status" });
   const dialog = el("dialog", { class: "assign", "aria-label": t("assign") }, el("h2", {}, t("assign")), text,
     el("p", { class: "group" }, el("button", { type: "button", id: "assign-cancel", onclick: () => dialog.close() }, t("cancel")),

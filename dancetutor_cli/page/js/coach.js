@@ -1,12 +1,12 @@
-// The coach: loops what was missed, and raises or lowers the speed by the score, until it goes at full speed.
+// The coach: loops stretches with misses, and changes the speed by the score until full speed is passed.
 
 import { FIRST, PASSED, coachRate, missedOf, scoreShare, whereOf } from "./record.js";
 
-const FULL = 1; // the speed that is wanted in the end
+const FULL = 1; // the speed that is the goal
 
 /**
  * @typedef {{from: number, to: number, rate: number, passed: boolean}} Target
- * beats, the speed to begin at, whether it was passed at that
+ * A stretch to practise. from, to : beats; rate : the first speed; passed : whether it was passed at this speed
  */
 
 export class Coach {
@@ -15,11 +15,11 @@ export class Coach {
     this.app = app;
     this.practice = practice;
     this.on = false;
-    this.message = ""; // what it has to say of the pass before
+    this.message = ""; // the comment on the pass before
   }
 
   /**
-   * What to practise next: what was missed, else the hardest passage that is not passed at full speed.
+   * Return what to practise next: a stretch with misses, else the hardest passage not passed at full speed.
    * @returns {Target | null}
    */
   next() {
@@ -34,7 +34,7 @@ export class Coach {
     return null;
   }
 
-  /** The loop that there is, at the speed at which it was passed. @returns {Target | null} */
+  /** Return the present loop, with the speed at which it was passed; null without a loop. @returns {Target | null} */
   looped() {
     const { transport: { loop }, chart, record } = this.app;
     if (!loop) return null;
@@ -44,7 +44,7 @@ export class Coach {
     return same ?? { from, to, rate: best || FIRST, passed: best > 0 };
   }
 
-  /** @param {Target | null} [target] else the loop that there is, else what comes next */
+  /** Begin. @param {Target | null} [target] by default the present loop, else what is next */
   async start(target = this.looped()) {
     const { app, practice } = this;
     practice.recordOutcomes();
@@ -53,7 +53,7 @@ export class Coach {
       app.notice = app.t("coachNothing");
       return app.tell("coach");
     }
-    practice.setWait(false); // what waits does not count
+    practice.setWait(false); // no pass counts while the clock waits for rows
     if (!practice.along) practice.setAlong(true);
     await app.loopBeats(found.from, found.to);
     this.take(found);
@@ -74,7 +74,7 @@ export class Coach {
     app.tell("coach");
   }
 
-  /** A pass is over: another speed, or the next stretch. @param {import("./judge.js").Tally} tally */
+  /** Choose the next speed or the next stretch after a pass. @param {import("./judge.js").Tally} tally */
   pass(tally) {
     const { app } = this;
     const { transport, chart } = app;

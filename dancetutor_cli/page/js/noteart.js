@@ -1,4 +1,4 @@
-// How notes look: their shapes, bodies of holds and rolls, mines, markers of who steps, signs of how they were hit.
+// Drawings of notes: shapes, bodies of holds and rolls, mines, markers of the limb, signs of the verdict.
 
 import { GOOD, WINDOW } from "./judge.js";
 
@@ -106,7 +106,7 @@ export function markerAt(way, size, mark) {
 }
 
 /**
- * Who steps: letter, colour and shape; left foot a disc, right foot a square, hands with a ring; nobody a cross.
+ * Draw the marker of a limb with its letter: a disc for the left foot, a square for the right one, a ring for hands; a cross for nobody.
  * @param {Context} c @param {{limb: number, colour: string, changed: boolean}} who changed: by the author
  * @param {number} x @param {number} y @param {number} size
  */
@@ -154,7 +154,7 @@ export const COLOURS = /** @type {Record<string, string>} */ ({
 export const VERDICTS = Object.keys(COLOURS);
 
 /**
- * A sign at a note that was missed, or pressed early or late.
+ * Draw a sign at a note that was missed, or pressed early or late.
  * @param {Context} c @param {string} verdict @param {number} x @param {number} y @param {number} size @param {number} ratio
  */
 export function drawVerdict(c, verdict, x, y, size, ratio) {
@@ -170,7 +170,7 @@ export function drawVerdict(c, verdict, x, y, size, ratio) {
 }
 
 /**
- * What a press at a receptor was: a ring, for a wrong one a cross.
+ * Draw the verdict of a press at a receptor: a ring, or a cross for a wrong press.
  * @param {Context} c @param {string} verdict @param {number} x @param {number} y @param {number} size
  */
 export function drawPress(c, verdict, x, y, size) {
@@ -187,7 +187,7 @@ export function drawPress(c, verdict, x, y, size) {
 }
 
 /**
- * A verdict in a word, above the receptors.
+ * Write a verdict above the receptors.
  * @param {Context} c @param {string} colour @param {string} word @param {number} x its middle @param {number} y
  * @param {number} size pixels of the canvas
  */
@@ -211,7 +211,7 @@ export function drawErrors(c, errors, { x, y, width, ratio }) {
   const at = (/** @type {number} */ error) => x + (0.5 * width * Math.max(-WINDOW, Math.min(error, WINDOW))) / WINDOW;
   const colour = (/** @type {number} */ error) => COLOURS[Math.abs(error) <= GOOD ? "hit" : error < 0 ? "early" : "late"];
   c.globalAlpha = 0.6;
-  c.fillStyle = INK; // what is left of a note that has gone by is beneath it
+  c.fillStyle = INK; // a note that is over may still be seen below it
   c.fillRect(x - 0.5 * width - 4 * ratio, y - 7 * ratio, width + 8 * ratio, 14 * ratio);
   c.globalAlpha = 0.85;
   for (const [from, to, fill] of /** @type {[number, number, string][]} */ ([

@@ -6,7 +6,7 @@
 export const short = (x) => String(Math.round(x * 100) / 100);
 
 /**
- * The names of a stretch's first and last measure. @param {number} from @param {number} to measures, where it ends
+ * Return the names of the first and the last measure of a stretch. @param {number} from @param {number} to measures, where it ends
  * @returns {[string, string]}
  */
 export function named(from, to) {
@@ -14,7 +14,7 @@ export function named(from, to) {
   return [short(from), end.includes(".") ? end : String(Number(end) - 1)];
 }
 
-/** Where a stretch ends whose last measure, or the point it goes to, has this name. @param {string} name */
+/** Return where a stretch ends, from the name of its last measure or point. @param {string} name */
 function endOf(name) {
   return Number(name) + (name.includes(".") ? 0 : 1);
 }
@@ -32,7 +32,7 @@ export function stretch(t, from, to) {
 }
 
 /**
- * The place of a row as musicians count: the beats of each measure from 1 on.
+ * Return the place of a row as musicians count: the beats of each measure from 1.
  * @param {import("./words.js").Translate} t @param {number} beat
  */
 export function placeInMeasure(t, beat) {
@@ -40,7 +40,7 @@ export function placeInMeasure(t, beat) {
 }
 
 /**
- * The place of a row, as `analyze` tells it: measures and beats are both counted from 0, through the song.
+ * Return the place of a row as `analyze` prints it: measures and beats are both counted from 0, through the song.
  * @param {import("./words.js").Translate} t @param {number} beat
  */
 export function placeOf(t, beat) {
@@ -76,7 +76,7 @@ export function makeLink(from, to, rate) {
   return place || rate !== 1 ? `#${place}${rate === 1 ? "" : `@${short(rate)}`}` : "";
 }
 
-/** The address says what is looped, and how fast. @param {import("./app.js").App} app */
+/** Write the loop and the speed into the address. @param {import("./app.js").App} app */
 export function writeLink(app) {
   const { loop } = app.transport;
   const measure = (/** @type {number} */ second) => app.chart.beatAt(second) / 4;
@@ -84,11 +84,11 @@ export function writeLink(app) {
   try {
     history.replaceState(null, "", link || location.pathname + location.search);
   } catch {
-    // A browser that forbids it for pages from the disk: the link is only not in the address.
+    // Some browsers forbid this for pages from the disk. Then the address stays as it is.
   }
 }
 
-/** Do what the address says. @param {import("./app.js").App} app @param {string} hash */
+/** Set the loop, the speed and the place that the address names. @param {import("./app.js").App} app @param {string} hash */
 export function readLink(app, hash) {
   const link = parseLink(hash);
   const { t, chart } = app;

@@ -1,18 +1,18 @@
-// What somebody has practised of a chart, over days: how it went by row and foot, best speeds, loops with names. All of it is
-// plain data that this browser keeps; a file of it may come from anybody, so each value is looked at.
+// The record of practising a chart over days: results by row and foot, best speeds, loops with names. It is plain data
+// that this browser stores. A file of it may come from anybody, so each value is checked.
 
 import { clamp } from "./maths.js";
 
 export const BIN = 15; // milliseconds of a bar of the histogram
 export const BINS = 19; // bars: the middle one is around 0
 const MOST = { days: 1000, rows: 20000, loops: 50, best: 500, charts: 2000, name: 60, id: 500, beat: 1e6 };
-export const LARGEST = 4_000_000; // bytes of a file that is taken in
+export const LARGEST = 4_000_000; // limit of bytes of a file that is imported
 const FORMAT = "dancetutor-practice";
 const APART = 1; // measures between missed rows of one stretch
-const LONGEST = 4; // measures of one stretch: what is longer is practised in parts
+const LONGEST = 4; // limit of measures of one stretch; a longer one is divided
 const LOWEST = 0.25;
 const PART = /^\d{1,6}(\.\d{1,2})?-\d{1,6}(\.\d{1,2})?$/; // "16-32", beats
-export const FIRST = 0.7; // the speed of what was never passed
+export const FIRST = 0.7; // the first speed of a stretch that was never passed
 export const PASSED = 0.95; // score with which a stretch is passed
 
 /**
@@ -23,7 +23,7 @@ export const PASSED = 0.95; // score with which a stretch is passed
  */
 /**
  * @typedef {{tries: number, misses: number, timed: number, sum: number, missed: boolean, rate: number}} RowRecord
- * sum: ms; missed: the last time; rate: % at which its measure was last played without a miss, 0: never
+ * sum : ms; missed : whether at the last time; rate : speed of the last pass of its measure without a miss, %, 0: none
  */
 /** @typedef {{name: string, from: number, to: number, rate: number}} SavedLoop beats, %; where it ends */
 /**
@@ -36,13 +36,13 @@ export const PASSED = 0.95; // score with which a stretch is passed
  */
 /**
  * @typedef {{row: number, limb: number, measure?: number, verdict: import("./judge.js").Verdict, error: number | undefined}} Outcome
- * of a note; error: seconds
+ * The result of a note. error : seconds late
  */
 
 /** @returns {PracticeRecord} */
 export const emptyRecord = () => ({ days: [], rows: {}, loops: [], best: {}, scores: {}, plays: {}, top: 0 });
 
-/** The bar of an error. @param {number} error seconds */
+/** Return the bar of the histogram for an error. @param {number} error seconds */
 export const errorBin = (error) => clamp(Math.round((1000 * error) / BIN), -(BINS >> 1), BINS >> 1) + (BINS >> 1);
 
 /** @param {Date} date */
@@ -52,7 +52,7 @@ export const dayOf = (date) => [date.getFullYear(), date.getMonth() + 1, date.ge
 const newDay = (day) => ({ day, hit: 0, early: 0, late: 0, miss: 0, wrong: 0, feet: [new Array(BINS).fill(0), new Array(BINS).fill(0)] });
 
 /**
- * Add what was played at a speed.
+ * Add results of notes at a speed.
  * @param {PracticeRecord} record @param {string} day @param {Outcome[]} outcomes @param {number} wrong
  * @param {number} rate
  */
@@ -77,13 +77,13 @@ export function addOutcomes(record, day, outcomes, wrong, rate) {
   }
 }
 
-/** A pass without a slip. @param {PracticeRecord} record @param {string} where "16-32", beats @param {number} rate */
+/** Note a pass without a miss or a wrong press. @param {PracticeRecord} record @param {string} where "16-32", beats @param {number} rate */
 export function addClean(record, where, rate) {
   record.best[where] = Math.max(record.best[where] ?? 0, Math.round(100 * rate));
 }
 
 /**
- * How a pass went: the best one is that of the largest score times speed.
+ * Note the score of a pass. The best one has the largest product of score and speed.
  * @param {PracticeRecord} record @param {string} where @param {number} share 0..1 @param {number} rate
  */
 export function addPlay(record, where, share, rate) {
@@ -93,13 +93,13 @@ export function addPlay(record, where, share, rate) {
 }
 
 /**
- * The better of two passes; of equal ones the quicker.
+ * Return the better of two passes; if they are equal, the faster one.
  * @param {[number, number] | undefined} mine @param {[number, number]} theirs
  */
 const better = (mine, theirs) => (mine && mine[0] * mine[1] - theirs[0] * theirs[1] + (mine[1] - theirs[1]) / 1000 >= 0 ? mine : theirs);
 
 /**
- * Whether a part was passed at full speed: without a slip, or with a score that the coach calls passed.
+ * Whether a part was passed at full speed: without a mistake, or with the score `PASSED`.
  * @param {PracticeRecord} record @param {string} where
  */
 export const passedFull = ({ best, scores }, where) => best[where] >= 100 || scores[where] >= 100 * PASSED;
@@ -109,14 +109,14 @@ export const whereOf = (from, to) => `${Math.round(100 * from) / 100}-${Math.rou
 
 /** @typedef {{hit: number, early: number, late: number, miss: number, wrong: number}} Counts */
 
-/** Share of hits among notes, 0..1. @param {Counts} counts */
+/** Return the share of hits among notes, 0..1. @param {Counts} counts */
 export const hitShare = ({ hit, early, late, miss }) => hit / Math.max(hit + early + late + miss, 1);
 
-/** Share of notes whose panel was pressed, on time or not, 0..1. @param {Counts} counts */
+/** Return the share of notes whose panel was pressed, in time or not, 0..1. @param {Counts} counts */
 export const panelShare = ({ hit, early, late, miss }) => (hit + early + late) / Math.max(hit + early + late + miss, 1);
 
 /**
- * The score, 0..1: an early or late press is worth half a hit, a wrong one counts as a note that was missed.
+ * Return the score, 0..1: an early or late press is worth half a hit, a wrong press counts as a miss.
  * @param {Counts} counts
  */
 export function scoreShare({ hit, early, late, miss, wrong }) {
@@ -124,7 +124,7 @@ export function scoreShare({ hit, early, late, miss, wrong }) {
 }
 
 /**
- * Days in a row: those up to today (or yesterday, which today may still go on from), and the most there ever were.
+ * Return the number of days in a row up to today (or yesterday, because today is not over), and the largest number ever.
  * @param {Day[]} days @param {string} today @returns {{now: number, most: number}}
  */
 export function streakOf(days, today) {
@@ -140,7 +140,7 @@ export function streakOf(days, today) {
 
 /**
  * @typedef {{from: number, to: number, misses: number, rate: number, passed: boolean}} Missed
- * whole measures, in beats; rate: to begin at; passed: some time before
+ * A stretch of whole measures with misses. from, to : beats; rate : the first speed; passed : whether ever passed
  */
 
 /**
@@ -201,7 +201,7 @@ export function coachRate(rate, share, goal) {
 }
 
 /**
- * Of two records of one chart. Taking a file in twice changes nothing.
+ * Merge two records of one chart. Merging the same record twice changes nothing.
  * @param {PracticeRecord} mine @param {PracticeRecord} theirs
  */
 export function merged(mine, theirs) {
@@ -240,7 +240,7 @@ const within = (value, low, high) => typeof value === "number" && Number.isFinit
 const count = (value) => Number.isInteger(value) && within(value, 0, 1e9);
 
 /**
- * What may be kept of anything at all: each value that is as it must be.
+ * Return the valid parts of an unknown value as a record.
  * @param {unknown} value @returns {PracticeRecord}
  */
 export function validRecord(value) {
@@ -299,15 +299,15 @@ export function validRecord(value) {
     const [score, rate] = list(one, 2);
     if (PART.test(where) && within(score, 0, 100) && within(rate, 25, 200)) out.plays[where] = [score, rate];
   }
-  for (const [where, score] of Object.entries(out.scores)) out.plays[where] = better(out.plays[where], [score, 100]); // of an older page
+  for (const [where, score] of Object.entries(out.scores)) out.plays[where] = better(out.plays[where], [score, 100]); // from an older page
   return out;
 }
 
-/** A file of the records of charts. @param {Record<string, PracticeRecord>} charts */
+/** Return the text of a file with the records of charts. @param {Record<string, PracticeRecord>} charts */
 export const toFile = (charts) => JSON.stringify({ format: FORMAT, version: 1, charts });
 
 /**
- * The records in such a file; null for a text that is none.
+ * Return the records in such a file; null if the text is not one.
  * @param {string} text @returns {Map<string, PracticeRecord> | null}
  */
 export function fromFile(text) {

@@ -1,4 +1,4 @@
-// The panel of results: errors by foot, days, rows that go wrong, what was missed, and a file of it all.
+// The panel of results: errors by foot, days, rows with mistakes, misses through the song, and files of results.
 
 import { countsOf } from "./counts.js";
 import { bars, download, el } from "./dom.js";
@@ -7,10 +7,10 @@ import { BIN, BINS, LARGEST, dayOf, fromFile, missedOf, missesThrough, scoreShar
 import { lateText } from "./status_text.js";
 import { allRecords, loadRecord, saveRecord, takeRecords } from "./settings.js";
 
-const DAYS = 14; // that are shown
-const ROWS = 5; // rows that are listed
+const DAYS = 14; // limit of days that are shown
+const ROWS = 5; // limit of rows that are listed
 const TOPS = [10, 25, 50]; // percent at the top of the plot of misses, else 100
-const OFF = 30; // ms beside the note on average from which a row is listed that is never missed
+const OFF = 30; // ms; rows with a larger mean error are listed even if they are never missed
 
 /** @param {import("./app.js").App} app */
 export function resultsPanel(app) {
@@ -32,7 +32,7 @@ export function resultsPanel(app) {
   return panel;
 }
 
-/** A file of the results of all charts, to save and to take in. @param {import("./app.js").App} app */
+/** Make the buttons that save and import a file of the results of all charts. @param {import("./app.js").App} app */
 export function recordPart(app) {
   const { t, practice } = app;
   const file = el("input", {
@@ -65,7 +65,7 @@ export function recordPart(app) {
   );
 }
 
-/** Take in a file of records; what came of it, in words. @param {import("./app.js").App} app @param {File} file */
+/** Import a file of records; return a message. @param {import("./app.js").App} app @param {File} file */
 async function takeFile(app, file) {
   if (file.size > LARGEST) return app.t("recordLarge", { name: file.name.slice(0, 60), most: LARGEST / 1e6 });
   const records = fromFile(await file.text());
@@ -78,7 +78,7 @@ async function takeFile(app, file) {
   return app.t(records.has(app.id) ? "recordTaken" : "recordTakenOthers", { charts: records.size });
 }
 
-/** The score of today, as on the card at a song's end, and days in a row. @param {import("./app.js").App} app */
+/** Make the line with the score of today and the days in a row. @param {import("./app.js").App} app */
 function summary(app) {
   const { t, record } = app;
   const today = dayOf(new Date());

@@ -1,4 +1,4 @@
-// Slower and quicker music at its own pitch: overlapping pieces laid where they go on alike (WSOLA).
+// Changes the speed of music without its pitch: overlapping pieces are placed where their waves match (WSOLA).
 // Verhelst, Roelands: "An overlap-add technique based on waveform similarity (WSOLA)", ICASSP 1993.
 
 const PIECE = 0.05; // seconds of a piece; half of it overlaps with the next
@@ -15,10 +15,10 @@ export class Stretcher {
     this.rate = rate;
     this.length = channels[0].length;
     this.half = Math.round((PIECE * sampleRate) / 2);
-    // Where the next piece shall come from: the middles of pieces are where they should be, not their beginnings.
+    // Where the next piece comes from: by the middles of pieces, not by their beginnings.
     this.position = from * sampleRate + (rate - 1) * this.half;
     this.search = Math.round(SEARCH * sampleRate);
-    this.natural = NaN; // where the last piece would go on
+    this.natural = NaN; // place in the music where the last piece would continue
     this.window = Float32Array.from({ length: 2 * this.half }, (_, i) => Math.sin((Math.PI * (i + 0.5)) / (2 * this.half)) ** 2);
     this.tail = channels.map(() => new Float32Array(this.half));
     /** @type {Float32Array[]} what is made and not read yet */
@@ -27,7 +27,7 @@ export class Stretcher {
   }
 
   /**
-   * The next frames, one array a channel.
+   * Return the next frames, one array for each channel.
    * @param {number} count @returns {Float32Array[]}
    */
   read(count) {
@@ -38,7 +38,7 @@ export class Stretcher {
     return out;
   }
 
-  /** At its own speed the music is left alone. @param {number} count */
+  /** Return frames of music at its own speed, unchanged. @param {number} count */
   copy(count) {
     const start = Math.round(this.position);
     this.position += count;
@@ -53,7 +53,7 @@ export class Stretcher {
     return out;
   }
 
-  /** Half a piece more. */
+  /** Add half a piece to the output. */
   more() {
     const wanted = Math.round(this.position);
     const start = this.begun ? this.alike(wanted) : wanted;
@@ -61,7 +61,7 @@ export class Stretcher {
       const piece = this.cut(data, start, 2 * this.half);
       const out = new Float32Array(this.half);
       for (let i = 0; i < this.half; ++i) {
-        // The first half piece has no tail to overlap with: it is whole.
+        // The first half piece has nothing to overlap with, so it is used as it is.
         out[i] = this.begun ? this.tail[c][i] + piece[i] * this.window[i] : piece[i];
         this.tail[c][i] = piece[this.half + i] * this.window[this.half + i];
       }
@@ -78,7 +78,7 @@ export class Stretcher {
     this.position += this.half * this.rate;
   }
 
-  /** The place near `wanted` whose sound is most like how the last piece would go on. @param {number} wanted */
+  /** Return the place near `wanted` whose wave is most like the continuation of the last piece. @param {number} wanted */
   alike(wanted) {
     const { natural, half, search } = this;
     if (natural < 0 || natural + half > this.length) return wanted;
