@@ -242,7 +242,6 @@ def fixes() -> Iterable[str]:
 
 def folder(name: str) -> Callable[[], Iterable[str]]:
     """Return a function that lists the files in a folder of configs, without their suffix."""
-
     return partial(config_names, name)
 
 

@@ -102,13 +102,12 @@ class _Tree:
         return (f"bones that change their place are kept still: {which}, by up to {most:.1f} cm",)
 
 
-def read_bvh(path: Path, scale: float | None = None, ends: bool = False) -> Motion:
-    """Read the motion in a BVH file.
+def read_bvh(path: Path, ends: bool = False) -> Motion:
+    """Read the motion in a BVH file, in the unit of `UNITS` that makes the skeleton most like a human.
 
     Parameters
     ----------
     path : the file
-    scale : metres per unit of the file; None takes the unit of `UNITS` that makes the skeleton most like a human
     ends : whether End Sites become joints, named as their joint and " end"
 
     Returns
@@ -123,7 +122,7 @@ def read_bvh(path: Path, scale: float | None = None, ends: bool = False) -> Moti
     lines = _lines(path)
     joints, at = _hierarchy(path, lines)
     values, frame_time = _frames(path, lines, at, sum(len(j.channels) for j in joints))
-    scale = _scale(joints) if scale is None else scale
+    scale = _scale(joints)
     if ends:
         joints += [_Joint(f"{one.name} end", j, one.end) for j, one in enumerate(joints) if one.end is not None]
     tree = _Tree.of(joints, values)

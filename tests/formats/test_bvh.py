@@ -14,7 +14,7 @@ from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
-from dancetutor_cli.formats.bvh import read_bvh, write_bvh
+from dancetutor_cli.formats.bvh import UNITS, read_bvh, write_bvh
 from dancetutor_cli.run.errors import FileError
 
 FILES = ("cmu_01_01_jumps.bvh", "pymo_8walk.bvh")
@@ -69,20 +69,22 @@ def direct(path: Path, frames: list[int]) -> dict[str, np.ndarray]:
 @pytest.mark.parametrize("name", FILES)
 def test_positions_agree_with_a_direct_evaluation(shared_data: Path, name: str) -> None:
     path = shared_data / "bvh" / name
-    motion = read_bvh(path, scale=1.0)
+    motion = read_bvh(path)
     frames = [0, 1, 400, len(motion.times) - 1]
     expected = direct(path, frames)
     positions, _ = world_transforms(motion.skeleton, motion.rotations[frames], motion.root[frames])
     assert set(expected) == set(motion.skeleton.names)
+    unit = np.linalg.norm(motion.root[0]) / np.linalg.norm(expected[motion.skeleton.names[0]][0])
+    assert min(abs(unit / one - 1) for one in UNITS) < 1e-6
     for j, joint in enumerate(motion.skeleton.names):
-        np.testing.assert_allclose(positions[:, j], expected[joint], atol=1e-6)
+        np.testing.assert_allclose(positions[:, j], unit * expected[joint], atol=1e-6)
 
 
 @pytest.mark.parametrize("name", FILES)
 def test_round_trip_keeps_rotations_and_places(shared_data: Path, tmp_path: Path, name: str) -> None:
     motion = read_bvh(shared_data / "bvh" / name)
     write_bvh(tmp_path / "again.bvh", motion)
-    again = read_bvh(tmp_path / "again.bvh", scale=0.01)
+    again = read_bvh(tmp_path / "again.bvh")
     assert again.skeleton.names == motion.skeleton.names
     assert len(again.times) == len(motion.times)
     assert np.degrees(quat.angle_between(motion.rotations, again.rotations)).max() < 0.01
@@ -107,7 +109,7 @@ def test_any_rotation_of_the_dancer_survives(tmp_path_factory: pytest.TempPathFa
     motion = Motion(skeleton, 30.0, np.arange(3) / 30, rotations, rng.normal(size=(3, 3)), ())
     path = tmp_path_factory.mktemp("bvh") / "d.bvh"
     write_bvh(path, motion)
-    again = read_bvh(path, scale=0.01)
+    again = read_bvh(path)
     order = [again.skeleton.names.index(n) for n in skeleton.names]
     assert np.degrees(quat.angle_between(rotations, again.rotations[:, order])).max() < 0.01
     np.testing.assert_allclose(again.skeleton.offsets[order][1:], skeleton.offsets[1:], atol=1e-7)

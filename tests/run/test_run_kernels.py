@@ -18,7 +18,7 @@ from dancetutor_cli.commands.doctor import _cache
 from dancetutor_cli.commands.first_run import announce_compiling
 from dancetutor_cli.feet.preset import PresetChoice
 from dancetutor_cli.run import trust
-from dancetutor_cli.run.kernels import compiling, store
+from dancetutor_cli.run.kernels import compiling, stored_code
 
 MODULE = """
 from dancetutor_cli.run.kernels.compiling import njit
@@ -33,16 +33,16 @@ def double(x):
 def fresh(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Ask anew where kernels go, now and after the test."""
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-    store._use_folder.cache_clear()
+    stored_code._use_folder.cache_clear()
     yield
-    store._use_folder.cache_clear()
+    stored_code._use_folder.cache_clear()
 
 
 @pytest.fixture
 def nowhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An installation and a home in which nothing can be written, by root neither; the folder for temporary files."""
     (tmp_path / "file").touch()
-    monkeypatch.setattr(store, "PACKAGE", tmp_path / "file" / "package")
+    monkeypatch.setattr(stored_code, "PACKAGE", tmp_path / "file" / "package")
     for name in ("XDG_CACHE_HOME", "LOCALAPPDATA", "HOME"):
         monkeypatch.setenv(name, str(tmp_path / "file" / "home"))
     monkeypatch.setenv("TMPDIR", str(tmp_path / "tmp"))
@@ -56,7 +56,7 @@ def nowhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_a_read_only_installation_and_home_leave_a_temporary_folder(
     nowhere: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    folder = store.kernel_folder()
+    folder = stored_code.kernel_folder()
     assert folder.is_writable and folder.root is not None and folder.root.parent == nowhere
     if os.name != "nt":
         assert folder.root.stat().st_mode & 0o777 == 0o700
@@ -72,11 +72,11 @@ def test_a_read_only_installation_and_home_leave_a_temporary_folder(
 
 @pytest.mark.skipif(os.name == "nt", reason="the temporary folder of Windows is the user's own")
 def test_a_temporary_folder_of_another_user_is_not_used(nowhere: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    first = store.kernel_folder().root
+    first = stored_code.kernel_folder().root
     assert first is not None
     first.chmod(0o777)
-    store._use_folder.cache_clear()
-    assert not store.kernel_folder().is_writable
+    stored_code._use_folder.cache_clear()
+    assert not stored_code.kernel_folder().is_writable
     announce_compiling(PresetChoice())
     assert "compiles again" in capsys.readouterr().err
 
@@ -93,10 +93,10 @@ def test_a_user_without_a_home_has_no_cache_there(monkeypatch: pytest.MonkeyPatc
 
 def test_the_folder_that_is_asked_for_is_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "mine"))
-    assert store.kernel_folder() == store.KernelFolder(tmp_path / "mine")
+    assert stored_code.kernel_folder() == stored_code.KernelFolder(tmp_path / "mine")
     (tmp_path / "file").touch()
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "file" / "mine"))
-    assert "mine" in store.kernel_folder().fault
+    assert "mine" in stored_code.kernel_folder().fault
 
 
 def test_a_damaged_file_is_compiled_again_and_repaired(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -129,7 +129,7 @@ def test_a_full_disk_only_means_that_nothing_is_kept(tmp_path: Path, monkeypatch
     def full(*_: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(store, "write_file", full)
+    monkeypatch.setattr(stored_code, "write_file", full)
     module = loaded(source)
     assert module.double(4) == 8
     assert not list((tmp_path / "cache").glob("*/*"))
@@ -165,7 +165,7 @@ def test_a_command_runs_with_nothing_to_write_to(tmp_path: Path) -> None:
 
 def test_a_kernel_is_compiled_again_when_what_it_is_made_of_changes(tmp_path: Path) -> None:
     """Kernels go into each other, also from room to room, and constants of other modules into kernels."""
-    shutil.copytree(store.PACKAGE, tmp_path / "p", ignore=shutil.ignore_patterns("__pycache__", "_data"))
+    shutil.copytree(stored_code.PACKAGE, tmp_path / "p", ignore=shutil.ignore_patterns("__pycache__", "_data"))
     for source, others in (
         ("film/scene/cpu/floor.py", ["film/scene/cpu/standing.py", "film/scene/cpu/raster.py"]),
         ("dance/physics/hair.py", ["dance/rig/limbs.py", "dance/rig/body.py"]),
@@ -175,13 +175,13 @@ def test_a_kernel_is_compiled_again_when_what_it_is_made_of_changes(tmp_path: Pa
     ):
         found = {
             path.relative_to(tmp_path / "p").as_posix()
-            for path in store.source_modules(tmp_path / "p" / source, tmp_path / "p")
+            for path in stored_code.source_modules(tmp_path / "p" / source, tmp_path / "p")
         }
         assert found >= {source, *others}
     source = tmp_path / "p" / "dance" / "physics" / "hair.py"
-    before = store.source_digest.__wrapped__(source)
+    before = stored_code.source_digest.__wrapped__(source)
     source.write_text(source.read_text("utf-8") + "# more\n", "utf-8")
-    assert store.source_digest.__wrapped__(source) != before
+    assert stored_code.source_digest.__wrapped__(source) != before
 
 
 def _kernels(tree: ast.AST) -> Iterator[tuple[ast.FunctionDef, bool]]:
@@ -211,7 +211,7 @@ def _named(tree: ast.AST, inside: frozenset[ast.AST]) -> Iterator[str]:
 
 def test_inner_kernels_are_only_called_by_kernels() -> None:
     """Called from Python they would crash: no module that has or imports one names it outside of a kernel."""
-    root = store.PACKAGE
+    root = stored_code.PACKAGE
     trees = {path: ast.parse(path.read_text("utf-8")) for path in sorted(root.rglob("*.py"))}
     inner = {
         (path.relative_to(root.parent).with_suffix("").as_posix().replace("/", "."), node.name)
@@ -244,7 +244,7 @@ def test_it_is_known_whether_a_kernel_is_kept(tmp_path: Path, monkeypatch: pytes
     kernel(3)
     assert compiling.is_kept(kernel) and compiling.is_kept(loaded(module).double)
     module.write_text(MODULE.replace("2 *", "3 *"), "utf-8")
-    store.source_digest.cache_clear()
+    stored_code.source_digest.cache_clear()
     assert not compiling.is_kept(loaded(module).double)
 
 
@@ -271,9 +271,9 @@ def test_doctor_counts_the_kernels_of_each_place(tmp_path: Path, monkeypatch: py
     for folder in (package, mine):
         folder.mkdir()
     monkeypatch.setattr("dancetutor_cli.run.reading.PACKAGE", package)
-    monkeypatch.setattr(store, "PACKAGE", package)
-    monkeypatch.setattr(store, "kernel_folder", lambda: store.KernelFolder(mine, True, ""))
-    head = bytes(2 * store.CHECKSUM) + store.maker()
+    monkeypatch.setattr(stored_code, "PACKAGE", package)
+    monkeypatch.setattr(stored_code, "kernel_folder", lambda: stored_code.KernelFolder(mine, True, ""))
+    head = bytes(2 * stored_code.CHECKSUM) + stored_code.maker()
     for name in ("a.f.1.kernel", "a.f.2.kernel", "b.f.1.kernel"):
         (package / name).write_bytes(head)
     assert _cache().message == f"2 kernels in {package}, new ones go into {mine}"

@@ -1,7 +1,7 @@
 """Compile kernels with numba: an `njit` in place of numba's, and machine code for `native`.
 
 Only this module imports numba. numba fails if it finds no folder that it can write, or if one of its files was cut
-short. With `njit` of this module, the kernel is only compiled again: `store` stores the compiled code.
+short. With `njit` of this module, the kernel is only compiled again: `stored_code` stores the compiled code.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ F = TypeVar("F")
 def njit(*, cache: bool = False, counted: bool = True, **options: Any) -> Callable[[F], F]:
     """Return the decorator `numba.njit`, which here keeps the type hints of the function.
 
-    cache : whether the compiled code is stored in `store`
+    cache : whether the compiled code is stored in `stored_code`
     counted : False for a kernel that makes no arrays and only uses those it is given: then numba does not count
         references. It counts them by calls wherever an array is taken from a tuple or passed on, also inside loops. In
         the solver's rules, that took half of the time.

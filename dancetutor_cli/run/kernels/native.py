@@ -27,7 +27,7 @@ from dancetutor_cli.run.kernels.stored_code import StoredCode
 
 RESULTS = 2  # places for a kernel's results, before its arguments
 _OBJECT_FILES = (b"\x7fELF", b"\xcf\xfa\xed\xfe", b"\x64\x86", b"\x64\xaa")  # first bytes of the systems' object files
-_start: Any = (ctypes.c_char * 0).from_buffer  # no items, only the address of the first, so that empty arrays work too
+_no_bytes_of: Any = (ctypes.c_char * 0).from_buffer  # a view of no bytes has an address; an empty array has one, too
 _Unused: Any = ctypes.c_void_p * 2  # for the kernel's return value (none) and the number of an exception of numba
 _prototype: Any = ctypes.PYFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64)
 
@@ -176,7 +176,7 @@ def _address(array: NDArray[Any]) -> int:
     The buffer protocol takes a fifth of the time of `__array_interface__`, but refuses read-only arrays.
     """
     try:
-        return ctypes.addressof(_start(array))
+        return ctypes.addressof(_no_bytes_of(array))
     except TypeError:
         if array.flags.writeable or not array.flags.c_contiguous:
             raise
