@@ -224,9 +224,9 @@ def _content(
         motions=motions,
         directions=pad.directions,
         second_name=Path(page.request.second or "").stem,
-        second_rows=[row for one in second for row in _differing(one.play, play)]
+        second_rows=[row for one in second for row in _rows_that_differ(one.play, play)]
         if second or len(solved) > 1
-        else _otherwise(motions[1:], play),
+        else _rows_with_other_limbs(motions[1:], play),
         passages=_passages(solved),
         flips=flips_of(play, pad, first.preset, overrides)
         if alone and (overrides := first.overrides) is not None
@@ -237,14 +237,14 @@ def _content(
     )
 
 
-def _differing(other: Play | None, play: Play) -> list[int]:
+def _rows_that_differ(other: Play | None, play: Play) -> list[int]:
     """Return the rows that two plays step with different limbs."""
     assert other is not None
     rows: list[int] = np.flatnonzero((other.limb != play.limb).any(axis=1)).tolist()
     return rows
 
 
-def _otherwise(motions: Sequence[Motion], play: Play) -> list[int]:
+def _rows_with_other_limbs(motions: Sequence[Motion], play: Play) -> list[int]:
     """Return the rows of a play that the contacts of some motions step with other limbs."""
     limbs = play.limb
     touches = [c for motion in motions for c in motion.contacts if c.row < len(limbs) and c.column < limbs.shape[1]]
