@@ -109,7 +109,7 @@ def _ambiguous(subject: ChartSubject) -> Iterator[tuple[float, str]]:
 
 _ROWS = 16_000  # rows of charts that are checked together; the last chart may exceed it
 _CHART = 50  # rows that each chart counts in addition to its own
-_OTHERS = 20  # most charts of a file that are solved only to find the scale of its meters
+_MOST_FOR_SCALE = 20  # most charts of a file that are solved only to find the scale of its meters
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -279,7 +279,7 @@ class _File:
     def _with_meters(self) -> tuple[ChartResult, ...]:
         """Return the charts with their meters. The scale of the meters depends on all charts of the file."""
         task = self._task
-        for subject in _others(self._song, self._selected, task, self._meters):
+        for subject in _charts_for_scale(self._song, self._selected, task, self._meters):
             self._meters.add(subject, task.rate)
         found = self._meters.reports(task.meter_scale)
         return tuple(_with_report(one, found[one.index]) if one.index in found else one for one in self._charts)
@@ -290,7 +290,9 @@ def _with_report(chart: ChartResult, report: MeterReport) -> ChartResult:
     return replace(chart, estimate=report.estimate, score=report.score, findings=findings)
 
 
-def _others(song: Song, selected: tuple[Chart, ...], task: AnalyzeTask, meters: Meters) -> Iterator[ChartSubject]:
+def _charts_for_scale(
+    song: Song, selected: tuple[Chart, ...], task: AnalyzeTask, meters: Meters
+) -> Iterator[ChartSubject]:
     """Yield charts that are not selected but are solved for the scale of the meters.
 
     The estimate of a chart's meter must not depend on the selection.
@@ -299,7 +301,7 @@ def _others(song: Song, selected: tuple[Chart, ...], task: AnalyzeTask, meters: 
 
     kinds, meant = meters.ask_for_others(task.meter_scale), {chart.index for chart in selected}
     others = (chart for chart in song.charts if chart.steps_type in kinds and chart.index not in meant)
-    for chart in islice(others, _OTHERS):
+    for chart in islice(others, _MOST_FOR_SCALE):
         yield solved_chart(song, chart, preset_for(chart, task.path, task.presets))
 
 

@@ -42,10 +42,10 @@ def check_chart(subject: ChartSubject, settings: Settings) -> tuple[Finding, ...
         return ()
     rules = rules_of(subject, settings)
     findings = [finding for rule in rules.values() for finding in _run_rule(rule, subject)]
-    results = _as_sure_as_they_are(findings, subject, settings, rules.get(_AMBIGUITY))
+    results = _with_unsure_as_info(findings, subject, settings, rules.get(_AMBIGUITY))
     if subject.play is None and subject.chart.written_type.startswith(_FINGERS) and _NO_PAD in rules:
         results = (one for one in results if one.rule == _NO_PAD or one.severity == "error")
-    return _in_order(finding for finding in results if not _silenced(finding, subject))
+    return _in_order(finding for finding in results if not _is_silenced(finding, subject))
 
 
 # Steps types that are played with fingers. For such charts, only DT103 and errors are reported.
@@ -72,8 +72,8 @@ _rules_cache: dict[int, tuple[Mapping[str, Options], Rules]] = {}
 
 def check_rule(code: str, rules: Rules, subject: ChartSubject, settings: Settings) -> tuple[Finding, ...]:
     """Return the findings that one rule adds to `check_chart`; an ambiguity of other rules is reported again."""
-    results = _as_sure_as_they_are(_run_rule(rules[code], subject), subject, settings, rules.get(_AMBIGUITY))
-    return tuple(finding for finding in results if not _silenced(finding, subject))
+    results = _with_unsure_as_info(_run_rule(rules[code], subject), subject, settings, rules.get(_AMBIGUITY))
+    return tuple(finding for finding in results if not _is_silenced(finding, subject))
 
 
 def _run_rule(rule: ChartRule | ReaderRule, subject: ChartSubject) -> list[Finding]:
@@ -85,7 +85,7 @@ def _run_rule(rule: ChartRule | ReaderRule, subject: ChartSubject) -> list[Findi
         return []
     found = rule.check(subject)
     about_all = subject.chart.player <= 1
-    return [one for one in found if (about_all or one.beat is not None) and not _silenced(one, subject)]
+    return [one for one in found if (about_all or one.beat is not None) and not _is_silenced(one, subject)]
 
 
 def _is_about_others(rule: Rule, subject: FileSubject | ChartSubject) -> bool:
@@ -111,7 +111,7 @@ def _rules_of_charts() -> Mapping[str, type[ChartRule] | type[ReaderRule]]:
     return {code: rule for code, rule in all_rules().items() if issubclass(rule, ChartRule | ReaderRule)}
 
 
-def _as_sure_as_they_are(
+def _with_unsure_as_info(
     findings: list[Finding], subject: ChartSubject, settings: Settings, ambiguity: ChartRule | ReaderRule | None
 ) -> Iterator[Finding]:
     """Yield the findings; a finding that is true only with unsure feet becomes an info.
@@ -172,7 +172,7 @@ def merged_by_foot(findings: tuple[Finding, ...], subject: ChartSubject) -> tupl
     return tuple(one for place, one in enumerate(findings) if place not in dropped)
 
 
-def _silenced(finding: Finding, subject: ChartSubject) -> bool:
+def _is_silenced(finding: Finding, subject: ChartSubject) -> bool:
     """Whether the author has silenced this finding in this row, in an editor or in dancetutor.yaml."""
     if finding.beat is None or not (subject.ignores.codes or subject.ignores.rules):
         return False

@@ -103,13 +103,13 @@ def _attempt(item: Item, request: AnnotateRequest, is_sm_of_pair: bool) -> Annot
 def _annotate(item: Item, request: AnnotateRequest, is_sm_of_pair: bool) -> AnnotateOutcome:
     song = load(item.source)
     if song.format == "ucs":
-        request, beside = _request_for_ucs(item.source, request)
+        request, file_styles = _request_for_ucs(item.source, request)
     else:
         possible = OF_EACH_FILE if is_sm_of_pair else IN_FILES
-        beside = [style for style in request.styles if style in possible]
-    if request.into_file and not request.strip and "edit" in beside:
-        beside.remove("edit")
-    work = _Work(item, request, song, tuple(beside))
+        file_styles = [style for style in request.styles if style in possible]
+    if request.into_file and not request.strip and "edit" in file_styles:
+        file_styles.remove("edit")
+    work = _Work(item, request, song, tuple(file_styles))
     if request.strip:
         work.strip()
     else:
@@ -122,18 +122,18 @@ def _request_for_ucs(path: Path, request: AnnotateRequest) -> tuple[AnnotateRequ
 
     Raises FileError if none is.
     """
-    beside = list(dict.fromkeys(OF_UCS[style] for style in request.styles if style in OF_UCS))
-    if not beside and not request.strip:
+    file_styles = list(dict.fromkeys(OF_UCS[style] for style in request.styles if style in OF_UCS))
+    if not file_styles and not request.strip:
         there = "measure (a text beside it) and sidecar"
         raise FileError(path, f"a .ucs file has no place for the markers {', '.join(request.styles)}; choose {there}")
-    return replace(request, styles=(), into_file=False), beside
+    return replace(request, styles=(), into_file=False), file_styles
 
 
 class _Work:
-    """The work on one file: planning the changes, then writing them. beside : the styles that write other files"""
+    """The work on one file: planning the changes, then writing them. file_styles : the styles that write other files"""
 
-    def __init__(self, item: Item, request: AnnotateRequest, song: Song, beside: tuple[str, ...]) -> None:
-        self.item, self.request, self.song, self.beside = item, request, song, beside
+    def __init__(self, item: Item, request: AnnotateRequest, song: Song, file_styles: tuple[str, ...]) -> None:
+        self.item, self.request, self.song, self.file_styles = item, request, song, file_styles
         self.changes: list[FileChange] = []
         self.lacks: list[CheckLine] = []
         self.problems: list[CheckLine] = []
@@ -162,11 +162,11 @@ class _Work:
         plan.check(song, data)
         self._add_chart_file(data, change)
         alone = [one for one in found.charts if not (one.chart.players or one.chart.player)]
-        if self.beside and len(alone) < len(found.charts):
+        if self.file_styles and len(alone) < len(found.charts):
             self.notes.append(
                 f"{song.path}: charts for two players can have markers only in the styles measure and rows"
             )
-        for name in self.beside if alone or not found.charts else ():
+        for name in self.file_styles if alone or not found.charts else ():
             try:
                 for planned in file_style(name).write(self.song, self.item.target.parent, alone):
                     self._add_beside(planned)
@@ -188,7 +188,7 @@ class _Work:
             self.lacks.append(CheckLine("has a film in its background changes to take out"))
         if own is not self.song:
             self.lacks.append(CheckLine("has charts for two pads to take out"))
-        for name in self.beside if self._in_place else ():
+        for name in self.file_styles if self._in_place else ():
             try:
                 for planned in file_style(name).strip(self.song, charts):
                     self._add_beside(planned)

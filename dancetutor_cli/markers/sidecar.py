@@ -34,7 +34,7 @@ def write(song: Song, folder: Path, feet: Sequence[ChartFeet]) -> Iterator[FileC
     files = _files(path, old)
     before = files.get(song.path.name, {}).get("charts", [])
     indices = {one.chart.index for one in feet}
-    kept = [entry for entry in before if entry.get("index") not in indices and _still_there(entry, song)]
+    kept = [entry for entry in before if entry.get("index") not in indices and _has_chart(entry, song)]
     charts = sorted([*kept, *(_entry(one) for one in feet)], key=lambda entry: int(entry["index"]))
     files[song.path.name] = {"charts": charts}
     new = _dump(files)
@@ -74,7 +74,7 @@ def notes_hash(chart: Chart) -> str:
     return hashlib.sha256(text.encode("ascii")).hexdigest()
 
 
-def _still_there(entry: Any, song: Song) -> bool:
+def _has_chart(entry: Any, song: Song) -> bool:
     index = entry.get("index")
     return isinstance(index, int) and 0 <= index < len(song.charts)
 

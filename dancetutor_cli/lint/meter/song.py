@@ -73,7 +73,7 @@ class Meters:
             usual = [
                 on_scale(one, name, known, faster=False) for one, (name, known) in zip(one_pad, scales, strict=True)
             ]
-            here = [self._played(one.index, estimate) for one, estimate in zip(of_pad, usual, strict=True)]
+            here = [self._rated_chart(one.index, estimate) for one, estimate in zip(of_pad, usual, strict=True)]
             sure = [one for one in here if one.estimate.is_scale_known]  # no findings if the scale is a guess
             labels = label_scales_of(one_pad, tag, scale)
             for one, played, label_scale in zip(of_pad, here, labels, strict=True):
@@ -83,7 +83,7 @@ class Meters:
                 out[one.index] = MeterReport(own, _score(steps_type, one, label_scale), findings)
         return out
 
-    def _played(self, index: int, estimate: Estimate) -> RatedChart:
+    def _rated_chart(self, index: int, estimate: Estimate) -> RatedChart:
         """Return a chart as the rules receive it."""
         chart = self._song.charts[index]
         place = {"line": chart.line, "column": 1, "chart": index}
