@@ -139,11 +139,11 @@ def _svg(report: MotionReport) -> str:
     parts = [markup.tag("rect", width="100%", height="100%", fill="white")]
     for panel in _panels(report):
         size = {"width": WIDTH - LEFT - 20, "height": PANEL}
-        parts.append(markup.tag("rect", x=LEFT, y=f"{panel.top}", **size, fill="none", stroke=GRID))
-        parts += [markup.tag("text", text, x=f"{x}", y=f"{y}", font_size=12, fill=INK) for x, y, text in _labels(panel)]
+        parts.append(markup.tag("rect", x=LEFT, y=panel.top, **size, fill="none", stroke=GRID))
+        parts += [markup.tag("text", text, x=x, y=y, font_size=12, fill=INK) for x, y, text in _labels(panel)]
         for points, colour in zip(panel.lines, panel.colours, strict=True):
             if panel.is_dotted:
-                parts += [markup.tag("circle", cx=f"{x:.1f}", cy=f"{y:.1f}", r=1.6, fill=colour) for x, y in points]
+                parts += [markup.tag("circle", cx=float(x), cy=float(y), r=1.6, fill=colour) for x, y in points]
             else:
                 line = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
                 parts.append(markup.tag("polyline", points=line, fill="none", stroke=colour, stroke_width=0.8))
