@@ -85,7 +85,7 @@ def test_another_body_gets_springs_by_a_search_that_is_kept(
     tuning = json.loads(kept.read_text())
     assert 0.7 < tuning["stretch"] < 1.3 and min(tuning["density"].values()) >= 400
     first = out.read_bytes()
-    monkeypatch.setattr("dancetutor_cli.character.retargeting.search_tuning", None)  # it is not searched again
+    monkeypatch.setattr("dancetutor_cli.dance.physics.tuning.search_tuning", None)  # it is not searched again
     run(bvh, "-o", out, "--character", character)
     assert out.read_bytes() == first
     assert read_npz(out).skeleton.rest[0, 1] < 0.7, "short legs"

@@ -17,7 +17,7 @@ from module_file import loaded
 from numpy.typing import NDArray
 
 from dancetutor_cli.run.errors import DancetutorError
-from dancetutor_cli.run.kernels import compiling, native, store
+from dancetutor_cli.run.kernels import compiling, native, stored_code
 from dancetutor_cli.run.kernels.native import Kernel, MachineCode
 
 MODULE = """
@@ -81,7 +81,7 @@ def kernel(folder: Path, name: str = "sums", comment: str = "") -> Kernel:
     """A kernel as a new process has it. comment : what its module ends with"""
     module = folder.parent / "some_kernels.py"
     module.write_text(MODULE + comment, "utf-8")
-    store.source_digest.cache_clear()
+    stored_code.source_digest.cache_clear()
     return Kernel(getattr(loaded(module), name), {"sums": 2, "first": 1}.get(name, 0))
 
 
@@ -132,13 +132,13 @@ def test_what_was_made_of_other_code_or_for_another_processor_is_not_used(
     kernel(folder, "enter", "# more")(values)
     assert compiled == ["enter"] * 2
     for name, other in (("processor", ("another", "")), ("_version", "0.1"), ("_settings", {"NUMBA_OPT": "0"})):
-        before = store.maker()
+        before = stored_code.maker()
         with monkeypatch.context() as changed:
-            changed.setattr(store, name, lambda *_, other=other: other)
-            store.maker.cache_clear()
-            assert store.maker() != before, name
-        store.maker.cache_clear()
-    monkeypatch.setattr(store, "maker", lambda: bytes(32))
+            changed.setattr(stored_code, name, lambda *_, other=other: other)
+            stored_code.maker.cache_clear()
+            assert stored_code.maker() != before, name
+        stored_code.maker.cache_clear()
+    monkeypatch.setattr(stored_code, "maker", lambda: bytes(32))
     kernel(folder, "enter", "# more")(values)
     assert compiled == ["enter"] * 3
 
@@ -147,7 +147,7 @@ def test_nothing_is_kept_where_there_is_no_place(
     folder: Path, compiled: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder.write_text("a file")
-    monkeypatch.setattr(store, "kernel_folder", lambda: store.KernelFolder(folder))
+    monkeypatch.setattr(stored_code, "kernel_folder", lambda: stored_code.KernelFolder(folder))
     values = np.zeros(3)
     kernel(folder, "enter")(values)
     assert values[0] == 7 and compiled == ["enter"]
@@ -286,4 +286,6 @@ def test_threads_do_not_disturb_each_other(folder: Path) -> None:
 def test_versions_are_read_off_the_names_of_folders() -> None:
     from importlib.metadata import version
 
-    assert [store._version(name) for name in store.COMPILERS] == [version(name) for name in store.COMPILERS]
+    assert [stored_code._version(name) for name in stored_code.COMPILERS] == [
+        version(name) for name in stored_code.COMPILERS
+    ]

@@ -19,7 +19,7 @@ from hatchling.builders.wheel import WheelBuilder
 from module_file import loaded
 
 from dancetutor_cli.commands.doctor import _cache
-from dancetutor_cli.run.kernels import compiling, store
+from dancetutor_cli.run.kernels import compiling, stored_code
 
 ROOT = Path(__file__).resolve().parents[2]
 MODULE = """
@@ -30,13 +30,13 @@ def double(x):
     return 2 * x
 """
 able = pytest.mark.skipif(
-    not store.is_portable(), reason="this processor, or a setting of numba's, has kernels of its own"
+    not stored_code.is_portable(), reason="this processor, or a setting of numba's, has kernels of its own"
 )
 
 
 def hits(path: Path) -> bool:
     """Whether a module's kernel was fetched; that it counts right in any case."""
-    for cached in (store.source_digest, store.maker):
+    for cached in (stored_code.source_digest, stored_code.maker):
         cached.cache_clear()
     module = loaded(path)
     assert module.double(4) == 8
@@ -50,14 +50,14 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     (package / "room").mkdir(parents=True)
     source = package / "room" / "some_kernels.py"
     source.write_text(MODULE, "utf-8")
-    monkeypatch.setattr(store, "PACKAGE", package)
+    monkeypatch.setattr(stored_code, "PACKAGE", package)
     monkeypatch.setattr("dancetutor_cli.run.reading.PACKAGE", package)
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "build"))
     assert not hits(source)
-    shutil.copytree(store.kernel_folder().of_module(source), came(package), dirs_exist_ok=True)
+    shutil.copytree(stored_code.kernel_folder().of_module(source), came(package), dirs_exist_ok=True)
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "mine"))
     yield package
-    for cached in (store.source_digest, store.maker):
+    for cached in (stored_code.source_digest, stored_code.maker):
         cached.cache_clear()
 
 
@@ -82,13 +82,13 @@ def test_what_came_is_fetched_and_nothing_is_written(package: Path) -> None:
 
 @able
 def test_what_came_serves_where_nothing_can_be_kept(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(store, "_use_folder", lambda *_: "cannot be written")
-    monkeypatch.setattr(store, "temporary_folder", lambda name: None)
-    assert not store.kernel_folder().is_writable and hits(source_of(package))
+    monkeypatch.setattr(stored_code, "_use_folder", lambda *_: "cannot be written")
+    monkeypatch.setattr(stored_code, "temporary_folder", lambda name: None)
+    assert not stored_code.kernel_folder().is_writable and hits(source_of(package))
 
 
 def other_maker(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(store, "_version", lambda name: "0.1")
+    monkeypatch.setattr(stored_code, "_version", lambda name: "0.1")
 
 
 def other_python(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -106,7 +106,7 @@ def other_settings(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def other_processor(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("NUMBA_CPU_NAME")
     monkeypatch.delenv("NUMBA_CPU_FEATURES")
-    monkeypatch.setattr(store, "_is_able", lambda: False)
+    monkeypatch.setattr(stored_code, "_is_able", lambda: False)
 
 
 def flipped(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -150,8 +150,8 @@ def test_what_is_compiled_for_another_processor_than_its_key_says_is_not_kept(
 
 @able
 def test_doctor_says_that_kernels_are_for_others(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(store, "_version", lambda name: "0.1")
-    store.maker.cache_clear()
+    monkeypatch.setattr(stored_code, "_version", lambda name: "0.1")
+    stored_code.maker.cache_clear()
     assert _cache().message.endswith("1 kernel for another version of Python, numba or llvmlite: not used")
 
 
@@ -160,9 +160,9 @@ def test_doctor_says_that_kernels_are_for_others(package: Path, monkeypatch: pyt
 def test_kernels_are_for_a_portable_processor_unless_one_is_named(said: dict[str, str]) -> None:
     plain = {key: value for key, value in os.environ.items() if not key.startswith("NUMBA_")}
     code = (
-        "from dancetutor_cli.run.kernels import compiling, store\n"
+        "from dancetutor_cli.run.kernels import compiling, stored_code\n"
         "from numba.core.registry import cpu_target\n"
-        "print(store.is_portable(), *cpu_target.target_context.codegen().magic_tuple()[1:])"
+        "print(stored_code.is_portable(), *cpu_target.target_context.codegen().magic_tuple()[1:])"
     )
     told = subprocess.run(
         [sys.executable, "-c", code], env=plain | said, cwd=ROOT, check=True, capture_output=True, text=True
@@ -229,5 +229,5 @@ def test_a_platform_wheel_brings_its_kernels(tmp_path: Path, monkeypatch: pytest
 def test_the_extra_names_what_the_locked_environment_compiles_with() -> None:
     said = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]["compiled"]
     lock = (ROOT / "requirements.lock").read_text("utf-8")
-    assert {one.partition("==")[0] for one in said} == set(store.COMPILERS)
+    assert {one.partition("==")[0] for one in said} == set(stored_code.COMPILERS)
     assert all(f"\n{one} " in lock or lock.startswith(f"{one} ") for one in said)
