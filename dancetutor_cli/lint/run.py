@@ -52,12 +52,15 @@ class LintRequest(ResultOptions):
 
 @dataclass
 class LintRun:
-    """A run that makes tasks of files, and reported results of raw results."""
+    """The settings of a run for each file, and its baseline: from a file to its task, from a result to what is reported.
+
+    Files share a settings file, its configuration and its choice of presets; each is read once.
+    """
 
     request: LintRequest
-    _by_source: dict[Path | None, Configuration] = field(default_factory=dict)
-    _sources: dict[Path, Path | None] = field(default_factory=dict)
-    _choices: dict[int, PresetChoice] = field(default_factory=dict)
+    _configurations: dict[Path | None, Configuration] = field(default_factory=dict)
+    _settings_files: dict[Path, Path | None] = field(default_factory=dict)
+    _preset_choices: dict[int, PresetChoice] = field(default_factory=dict)
     _baseline: Baseline | None = None
     _found_keys: list[Key] = field(default_factory=list)
 
@@ -67,26 +70,26 @@ class LintRun:
         The nearest dancetutor.yaml is in the file's folder or in a folder above it.
         """
         given = self.request.config
-        source = None if given is not None else self._source(path.parent)
-        if source not in self._by_source:
+        source = None if given is not None else self._settings_file(path.parent)
+        if source not in self._configurations:
             loaded = load_configuration(given if given is not None else source, found=given is None)
             loaded = with_assignments(loaded, self.request.assignments)
             if self.request.sync:
                 loaded = replace(loaded, settings=replace(loaded.settings, sync=True))
-            self._by_source[source] = with_selection(loaded, self.request.select, self.request.ignore)
-        return self._by_source[source]
+            self._configurations[source] = with_selection(loaded, self.request.select, self.request.ignore)
+        return self._configurations[source]
 
-    def _source(self, folder: Path) -> Path | None:
-        if folder not in self._sources:
-            self._sources[folder] = find_settings_file(folder)
-        return self._sources[folder]
+    def _settings_file(self, folder: Path) -> Path | None:
+        if folder not in self._settings_files:
+            self._settings_files[folder] = find_settings_file(folder)
+        return self._settings_files[folder]
 
     def presets(self, path: Path) -> PresetChoice:
         """Return the choice of cost presets for a file's charts; UsageError or FileError if one cannot be loaded."""
         configuration = self.configuration(path)
-        if id(configuration) not in self._choices:  # all files of a source share it, see `_by_source`
-            self._choices[id(configuration)] = choice_of(self.request.preset, configuration.presets)
-        return self._choices[id(configuration)]
+        if id(configuration) not in self._preset_choices:  # all files of a source share it, see `_configurations`
+            self._preset_choices[id(configuration)] = choice_of(self.request.preset, configuration.presets)
+        return self._preset_choices[id(configuration)]
 
     def needs(self, path: Path) -> Iterator[Path]:
         """Yield the other files on which a file's findings depend, existing or not: feet, settings, presets, baseline.
