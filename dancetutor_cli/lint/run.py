@@ -52,7 +52,7 @@ class LintRequest(ResultOptions):
 
 @dataclass
 class LintRun:
-    """The settings of a run for each file, and its baseline: from a file to its task, from a result to what is reported.
+    """The settings of a run for each file, and its baseline: makes a task of a file, and of a result what is reported.
 
     Files share a settings file, its configuration and its choice of presets; each is read once.
     """
