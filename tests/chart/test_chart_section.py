@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 
 from dancetutor_cli.chart.timing import Timing
-from dancetutor_cli.lint.sections import check_section, parse_section
+from dancetutor_cli.lint.sections import check_part, parse_section
 from dancetutor_cli.run.errors import UsageError
 
 TIMING = Timing(((0, Fraction(120)),), stops=((96, Fraction(1)),), offset=Fraction(-1, 2))  # beat 0 at 0.5 s
@@ -44,7 +44,7 @@ def test_nonsense_is_refused_in_one_line(text: str) -> None:
 
 def test_a_slip_is_reported_without_a_song() -> None:
     for text in ("10:25", ":25", "m4:b20"):
-        check_section(text)
+        check_part(text)
     for text in ("", "m1", "1:2:3", "b:m"):
         with pytest.raises(UsageError):
-            check_section(text)
+            check_part(text)

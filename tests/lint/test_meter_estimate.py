@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Sequence
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
@@ -14,7 +15,7 @@ from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.preset import load_preset
 from dancetutor_cli.lint.findings import Estimate
 from dancetutor_cli.lint.meter.estimate import MeteredChart, label_scales_of, on_scale, scales_of, size
-from dancetutor_cli.lint.meter.model import features, model_for
+from dancetutor_cli.lint.meter.model import Feature, features_of, model_for
 from dancetutor_cli.lint.subject import solved_chart
 from dancetutor_cli.run.reading import charts_path
 
@@ -36,6 +37,10 @@ def stream(rows: list[str], measures: int = 24, bpm: int = 150) -> Play:
     play = solved_chart(song, song.charts[0], load_preset("itg")).play
     assert play is not None
     return play
+
+
+def features(play: Play, wanted: Sequence[Feature], rate: float) -> list[float]:
+    return features_of([play], wanted, rate)[0]
 
 
 def estimated(play: Play, steps_type: str = "dance-single", scale: str = "itg", rate: float = 1.0) -> Estimate:
