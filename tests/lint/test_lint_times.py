@@ -14,6 +14,7 @@ from dancetutor_cli.reports.rule_pages import explain
 from dancetutor_cli.run.errors import UsageError
 
 TIMED = [code for code, options in default_rules().items() if options.get("max_seconds") == BY_METER]
+MILLISECONDS = rule_settings._times().milliseconds
 
 
 def move(code: str) -> str:
@@ -31,18 +32,16 @@ def test_the_table_is_whole(code: str) -> None:
     found = list(rule_settings.bands(move(code)))
     assert len(found) == 20 and sum(band.charts for band in found) > 1500
     for band in found:
-        assert len(band.within) == len(rule_settings.milliseconds())
+        assert len(band.within) == len(MILLISECONDS)
         assert list(band.within) == sorted(band.within) and band.within[0] >= 0 and band.within[-1] <= 100
 
 
 def test_the_longest_time_that_few_enough_charts_have() -> None:
-    band = rule_settings.Band(
-        "dance-single", 1, 3, 100, (0, 3, 10, 11) + (11,) * (len(rule_settings.milliseconds()) - 4)
-    )
-    assert rule_settings.limit_of(band, 10) == rule_settings.milliseconds()[2]
-    assert rule_settings.limit_of(band, 2.9) == rule_settings.milliseconds()[0]
-    assert rule_settings.limit_of(band, 100) == rule_settings.milliseconds()[-1]
-    none = rule_settings.Band("dance-single", 1, 3, 100, (50,) * len(rule_settings.milliseconds()))
+    band = rule_settings.Band("dance-single", 1, 3, 100, (0, 3, 10, 11) + (11,) * (len(MILLISECONDS) - 4))
+    assert rule_settings.limit_of(band, 10) == MILLISECONDS[2]
+    assert rule_settings.limit_of(band, 2.9) == MILLISECONDS[0]
+    assert rule_settings.limit_of(band, 100) == MILLISECONDS[-1]
+    none = rule_settings.Band("dance-single", 1, 3, 100, (50,) * len(MILLISECONDS))
     assert rule_settings.limit_of(none, 10) == 0
 
 
