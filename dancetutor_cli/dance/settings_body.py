@@ -151,6 +151,7 @@ class LayerSettings:
     wrists: Degrees
     blink_time: Seconds
     beat_shortest: Seconds
+    beat_longest: Seconds
     beat_width: Seconds
     beat_fade: Ratio
     wrist_time: Seconds

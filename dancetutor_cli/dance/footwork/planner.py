@@ -323,7 +323,7 @@ def plan_dance(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -
     rail = bar_of(pad, course.states[0].bar) if bar else None
     if bar:
         course = replace(course, states=tuple(map(holding, course.states)))
-    context = context_of(pad, course.states[0], _beats(timing, play), rail)
+    context = context_of(pad, course.states[0], _beats(timing, play, course.states[0].layers.beat_longest), rail)
     changes = course if course.changes else None
     context = replace(context, sides=manner.get("sides"), person=manner.get("person", 0), course=changes)
 
@@ -345,9 +345,17 @@ def _standing(plan: Plan, walk: WalkSettings) -> tuple[float, float]:
     return arrived, min((w.start for w in plan.walks if w.start > plan.last), default=plan.last + walk.lead_out)
 
 
-def _beats(timing: Timing, play: Play) -> tuple[float, ...]:
-    """Return the seconds of all beats from the first measure until `BEATS_AFTER` beats after the last row."""
+def _beats(timing: Timing, play: Play, longest: float) -> tuple[float, ...]:
+    """Return the seconds of all beats from the first measure until `BEATS_AFTER` beats after the last row.
+
+    Beats that are more than `longest` seconds apart are divided in two, four or more: a chart at 40 BPM is mostly one
+    of a song at 80 or 160, and a listener feels that pulse (Parncutt, *A perceptual model of pulse salience and
+    metrical accent in musical rhythms*, 1994: pulses near 0.6 s are the clearest).
+    """
     if not len(play.rows):
         return ()
     ticks = np.arange(0, int(play.rows.tick[-1]) + BEATS_AFTER * TICKS_PER_BEAT, TICKS_PER_BEAT, dtype=np.int64)
-    return tuple(timing.seconds(ticks).tolist())
+    beats = timing.seconds(ticks)
+    parts = 2 ** np.ceil(np.log2(np.maximum(np.diff(beats) / longest, 1.0))).astype(np.int64)
+    within = [np.linspace(beats[k], beats[k + 1], n, endpoint=False) for k, n in enumerate(parts.tolist())]
+    return tuple(np.concatenate((*within, beats[-1:])).tolist())

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
 from dancetutor_cli.dance.context import Context
-from dancetutor_cli.dance.plan import Move, Plan, Sidestep, Step, Swing, chance_of
+from dancetutor_cli.dance.plan import Jump, Move, Plan, Sidestep, Step, Swing, WalkStep, chance_of
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_body import GrooveSettings, LayerSettings
 from dancetutor_cli.dance.smoothing import smooth, smooth_path
@@ -62,6 +63,11 @@ MOST_LOST = 6.0  # largest factor by which the wanted bob is enlarged, because s
 BEAT = 0.5  # seconds from beat to beat at which the dancer bobs by `groove.bob`; slower beats have a larger bob
 BEATS, STEPS = 0.6, 0.07  # how much hands pump with the beat, and seconds over which they go with a step
 SLOWEST = 0.72  # seconds from beat to beat; the bob of slower beats is no larger
+PULSE_SHORTEST = 0.30  # seconds from one pulse of the bob to the next at least
+ON_BEAT = 0.05  # seconds from a beat within which a step is on it
+CENTRE = 0.75  # how far the middle of the bob is lowered, as a part of half of it
+WITHOUT_STEP = 0.65  # a beat without a step is danced this part as deep as one with a step
+LOWEST = 0.42  # part of the time between two pulses at which she is lowest
 NEAR_JUMPS = 0.5  # seconds before and after a jump in which the bob is smaller
 CALM = 0.4  # share of the sway that stops where the dancer comes to rest
 MOSTLY = 0.6  # share of the time, from `groove.mostly` (0) to always (1), in which the trunk moves as in jacks
@@ -107,6 +113,7 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
     numbers, jacks = settings.groove, repeated(plan, times, settings)
     calmer = occupation.tempo * (1.0 - numbers.jack * jacks)
     beat = beat_bounce(context, times, calmer, occupation.busy)
+    beat *= 1.0 - (1.0 - WITHOUT_STEP) * (1.0 - occupation.waits) * _without_step(plan, times, context)
     share = dancing(calmer, occupation.busy, settings.layers) * (1.0 - occupation.waits)
     grounded = _grounded(plan, times, 3.0 * numbers.ease)
     slow = share
@@ -121,7 +128,7 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
     sink = (1.0 + deeper) * settings.layers.bounce * late
     among = (1.0 - slow / 4.0) * (1.0 - np.clip(occupation.busy + occupation.waits, 0.0, 1.0))
     among *= _grounded(plan, times, NEAR_JUMPS)
-    bob = among * _bob(context, times, occupation.tempo)
+    bob = among * _bob(plan, context, times, occupation.tempo)
     to_side = sway(plan, times, context)
     free = np.clip(1.0 - share - occupation.busy - occupation.waits, 0.0, 1.0)
     loose = np.clip(1.0 - occupation.busy - occupation.waits, 0.0, 1.0) * _among_steps(plan, times)
@@ -130,24 +137,73 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
     return Groove(beat, sink, bob, share * to_side, pump, grounded, carried)
 
 
-def _bob(context: Context, times: Array, tempo: Array) -> Array:
-    """Return by how much (n,) the height has to be lowered on beats, metres, on average half of what remains of it.
+def _bob(plan: Plan, context: Context, times: Array, tempo: Array) -> Array:
+    """Return by how much (n,) the height has to be lowered on pulses, metres, on average half of what remains of it.
 
-    Smoothing the height leaves 1 / (1 + (2 pi T / beat)^6) of a movement that comes and goes with the beat. T is the
-    time constant of `height.height_path`. So the movement is enlarged by the inverse, and the knees bend no more for
-    it on average. tempo : (n,) as in `height`
+    Smoothing the height leaves 1 / (1 + (2 pi T / every)^6) of a movement that comes and goes with pulses `every`
+    seconds apart. T is the time constant of `height.height_path`. So the movement is enlarged by the inverse, and the
+    knees bend no more for it on average. tempo : (n,) as in `height`
     """
     body, late = context.settings.body, context.settings.layers.beat_late
-    at = heard_beats(context.beats, context.settings.layers.beat_shortest)
+    at = pulses(plan, heard_beats(context.beats, context.settings.layers.beat_shortest), PULSE_SHORTEST)
     if len(at) < 2:
         return np.zeros(len(times))
-    k = np.clip(np.searchsorted(at, times - late, side="right") - 1, 0, len(at) - 2)
-    every = at[k + 1] - at[k]
-    constant = body.height_calm + (body.height_smooth - body.height_calm) * tempo
+    gaps = np.diff(at)
+    lows = at + np.minimum(late, LOWEST * np.append(gaps, np.inf))
+    every = np.diff(lows)
+    quick = np.interp((lows[1:] + lows[:-1]) / 2, times, tempo)
+    constant = body.height_calm + (body.height_smooth - body.height_calm) * quick
     lost = np.minimum((2.0 * np.pi * constant / every) ** 6, MOST_LOST)
-    pulse = np.cos(2.0 * np.pi * (times - late - at[k]) / every)
-    far = context.settings.groove.bob * (np.minimum(every, SLOWEST) / BEAT) ** 1.5
-    return np.asarray(far / 2.0 * (1.0 + (1.0 + lost) * pulse))
+    far = context.settings.groove.bob * np.minimum(every, SLOWEST) / BEAT / 2.0
+    low, high = far * (CENTRE + 1.0 + lost), far * (CENTRE - 1.0 - lost)
+    low = (np.append(low[:1], low) + np.append(low, low[-1:])) / 2.0
+    low *= np.where(distances(at, step_landings(plan)) < ON_BEAT, 1.0, WITHOUT_STEP)
+    knots, values = np.empty(2 * len(lows) - 1), np.empty(2 * len(lows) - 1)
+    knots[::2], knots[1::2] = lows, (lows[1:] + lows[:-1]) / 2
+    values[::2], values[1::2] = low, high
+    k = np.clip(np.searchsorted(knots, times, side="right") - 1, 0, len(knots) - 2)
+    share = (1.0 - np.cos(np.pi * np.clip((times - knots[k]) / (knots[k + 1] - knots[k]), 0.0, 1.0))) / 2.0
+    return np.asarray(values[k] + share * (values[k + 1] - values[k]))
+
+
+def _without_step(plan: Plan, times: Array, context: Context) -> Array:
+    """Return whether (n,) the beat next to each time has no step, 0 or 1."""
+    at = heard_beats(context.beats, context.settings.layers.beat_shortest)
+    if not len(at):
+        return np.zeros(len(times))
+    near = at[np.searchsorted((at[1:] + at[:-1]) / 2, times)]
+    return np.asarray(distances(near, step_landings(plan)) >= ON_BEAT, dtype=np.float64)
+
+
+def pulses(plan: Plan, beats: Array, shortest: float) -> Array:
+    """Return the seconds (k,) at which the dancer goes down: with steps, and with the beat where there are none.
+
+    Steps on `beats` come first, then others after which she stands for `shortest` seconds, then beats; none is nearer
+    to one that is there than that.
+    """
+    lands = step_landings(plan)
+    on = distances(lands, beats) < ON_BEAT
+    long = np.append(np.diff(lands), np.inf) >= shortest
+    chosen: list[float] = []
+    for group in (lands[on], lands[~on & long], beats):
+        for second in group.tolist():
+            k = bisect_left(chosen, second)
+            if all(abs(second - other) >= shortest for other in chosen[max(k - 1, 0) : k + 1]):
+                chosen.insert(k, second)
+    return np.array(chosen)
+
+
+def step_landings(plan: Plan) -> Array:
+    """Return the seconds (k,) at which feet land that neither walk nor jump, in order, each once."""
+    moves = (m for track in plan.feet for m in track.moves if isinstance(m, Swing))
+    return np.unique([round(m.land, 4) for m in moves if not isinstance(m, WalkStep | Jump)])
+
+
+def distances(seconds: Array, others: Array) -> Array:
+    """Return how far (n,) each of the sorted `others` next to each of `seconds` (n,) is, seconds."""
+    padded = np.concatenate(([-np.inf], others, [np.inf]))
+    k = np.searchsorted(padded, seconds)
+    return np.asarray(np.minimum(seconds - padded[k - 1], padded[k] - seconds))
 
 
 def latest_side(plan: Plan, times: Array) -> Array:

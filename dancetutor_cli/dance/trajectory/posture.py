@@ -187,7 +187,7 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, roug
     head = limit_head_yaw(head, chest, course.rate, settings)
     drop = -np.radians(settings.wait.lean) * now.waiting.shift / max(settings.wait.shift, 1e-6)
     drop += np.radians(settings.groove.lean) * groove.sway
-    tilt += answer.tilt + drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
+    tilt += drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
     fold = np.radians(settings.jump.fold) * now.crouch + np.radians(settings.layers.beat_nod) * groove.beat
     tilt += fold[:, None] * np.column_stack((np.sin(chest), np.cos(chest))) + jump_lean(plan, times, settings.jump)
     controller = Controller.of(settings.inertia.chest_frequency, settings.inertia.chest_damping)
@@ -201,7 +201,7 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, roug
         yaw=course.yaw,
         chest_yaw=chest,
         head_yaw=head,
-        tilt=follow(tilt, course.rate, controller),
+        tilt=follow(tilt, course.rate, controller) + answer.tilt,
         reaching=now.reaching,
         heels=np.zeros((len(times), 2)),
         knees=np.zeros((len(times), 2)),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,16 +12,19 @@ from bake_plays import Event, L, R, chart, context, pad, plan_of, play
 
 from dancetutor_cli.dance.bake import bake_plan
 from dancetutor_cli.dance.context import Context
+from dancetutor_cli.dance.footwork.planner import plan_dance
 from dancetutor_cli.dance.motion import Motion
+from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.quality.figures import Body, body_of
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
-from dancetutor_cli.dance.trajectory.groove import Groove, Occupation, _bob, groove_of, repeated
+from dancetutor_cli.dance.trajectory.groove import Groove, Occupation, _bob, groove_of, pulses, repeated
 
 BEATS = tuple(np.arange(0.0, 20.0, 0.5))
 TIMES = np.arange(0.0, 12.0, 1.0 / 240.0)
 STILL = np.zeros(len(TIMES))
 SINGLE = np.array([3, 1, 2, 0])
+SETTINGS = context().settings
 
 
 def jack(gap: float, count: int = 24) -> list[Event]:
@@ -35,6 +39,10 @@ def heard(groove: bool = True) -> Context:
     out = replace(context(), beats=BEATS)
     still = replace(out.settings.groove, lean=0.0, twist=0.0, nod=0.0, shrug=0.0, hands=0.0, jack=0.0)
     return out if groove else replace(out, settings=replace(out.settings, groove=still))
+
+
+def planned(events: list[Event]) -> Plan:
+    return plan_of(chart().timing, play(events), pad())
 
 
 def groove(events: list[Event], tempo: float = 0.0, busy: float = 0.0, waits: float = 0.0) -> Groove:
@@ -75,12 +83,13 @@ def test_there_is_none_in_streams_with_busy_hands_or_in_waits(other: dict[str, f
 
 
 def test_in_streams_knees_are_asked_for_the_beat_but_not_near_jumps_or_by_busy_hands() -> None:
-    """Every half second, not with each of the steps; a calm path leaves a part of it."""
+    """Every half second, not with each of the steps; enlarged by what smoothing takes away again."""
     bob = groove(stream(0.125, 40), tempo=1.0).bob
     inside = (TIMES > 3.0) & (TIMES < 6.5)
     lowest = TIMES[1:-1][(bob[1:-1] > bob[:-2]) & (bob[1:-1] >= bob[2:]) & inside[1:-1]]
     np.testing.assert_allclose(lowest, 3.15 + 0.5 * np.arange(7), atol=0.01)  # `layers.beat_late` after each beat
-    assert 0.02 < np.ptp(bob[inside]) < 0.06
+    enlarged = 1.0 + (2.0 * np.pi * SETTINGS.body.height_smooth / 0.5) ** 6
+    assert np.ptp(bob[inside]) == pytest.approx(SETTINGS.groove.bob * enlarged, rel=0.03)
     jumps = groove([(2.0 + 0.5 * k, {0: L, 3: R}) for k in range(12)], tempo=1.0).bob
     assert jumps[(TIMES > 3.0) & (TIMES < 7.0)].max() < 0.1 * np.ptp(bob[inside])
     assert not groove(stream(0.125, 40), tempo=1.0, busy=1.0).bob.any()
@@ -88,8 +97,21 @@ def test_in_streams_knees_are_asked_for_the_beat_but_not_near_jumps_or_by_busy_h
 
 def test_beats_far_apart_bob_no_farther_than_slow_ones() -> None:
     """At a stop, or where a chart plays with its tempo, a beat lasts seconds; she would bob into the pad."""
-    far = replace(heard(), beats=tuple(np.arange(0.0, 40.0, 4.0)))
-    assert 0.02 < np.ptp(_bob(far, TIMES, STILL)) < 0.06
+    far, still = replace(heard(), beats=tuple(np.arange(0.0, 40.0, 4.0))), planned([(0.0, {0: L})])
+    assert 0.02 < np.ptp(_bob(still, far, TIMES, STILL)) < 0.06
+
+
+@pytest.mark.parametrize("late", [0.0, 0.2])
+def test_she_goes_down_with_a_step_beside_the_beat_and_less_on_beats_without_one(late: float) -> None:
+    """A step a second, on each second beat or 0.2 s after it; beats 0.2 s from a step have no pulse of their own."""
+    plan = planned([(1.0 + k + late, {(0, 3)[k % 2]: (L, R)[k % 2]}) for k in range(9)])
+    found = pulses(plan, np.arange(0.0, 12.0, 0.5), 0.3)
+    steps = found[np.abs(found - np.round(found) - late) < 1e-3]
+    assert set(np.arange(1.0, 10.0) + late) <= set(np.round(steps, 4))
+    assert np.diff(found).min() >= 0.3 - 1e-9
+    bob = _bob(plan, heard(), TIMES, STILL)
+    deep = [bob[np.abs(TIMES - 3.0 - at - SETTINGS.layers.beat_late) < 0.08].max() for at in (late, 0.5)]
+    assert deep[0] > 1.2 * deep[1]
 
 
 def test_the_mirror_image_sways_the_other_way() -> None:
@@ -157,3 +179,13 @@ def test_the_mirror_image_carries_the_other_hand() -> None:
     image = plan_of(chart().timing, mirrored_play(play(events), SINGLE), pad())
     other = groove_of(image, TIMES, Occupation(STILL, STILL, STILL), heard())
     np.testing.assert_allclose(other.carried, groove(events).carried[:, ::-1], atol=1e-12)
+
+
+@pytest.mark.parametrize(("bpm", "parts"), [(160.0, 1), (64.0, 1), (40.0, 2), (30.6, 4), (14.0, 8)])
+def test_slow_beats_are_divided_until_a_listener_would_clap_to_them(bpm: float, parts: int) -> None:
+    """GLORIA is written at 30.6 BPM: a beat of 1.96 s; its pulse is 0.49 s."""
+    timing = SimpleNamespace(seconds=lambda tick: np.asarray(tick) / 48.0 * 60.0 / bpm)
+    _, context = plan_dance(timing, play(stream(1.0, 8)), pad())
+    gaps = np.diff(context.beats)
+    np.testing.assert_allclose(gaps, 60.0 / bpm / parts)
+    assert gaps.max() <= SETTINGS.layers.beat_longest
