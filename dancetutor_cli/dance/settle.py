@@ -108,7 +108,8 @@ def targets_at(
     free : as for `ik_targets`
     """
     at, feet = sampled
-    up = sample_path(body.heels, body.times, at) + waiting_at(plan, at, context).heels
+    tapped = waiting_at(plan, at, context).heels * heels_may_rise(plan, at, context.settings.step.press_time)
+    up = sample_path(body.heels, body.times, at) + tapped
     return ik_targets(plan, body, raised(feet, up), at, context, free)
 
 

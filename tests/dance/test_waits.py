@@ -15,6 +15,7 @@ from dancetutor_cli.dance.quality.figures import body_of
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.settings import default_settings
 from dancetutor_cli.dance.waits import WaitMotion, waiting_at
+from dancetutor_cli.feet.limbs import Part
 from dancetutor_cli.feet.play import Play
 from tests.dance.bake_mirror import mirrored_play
 from tests.dance.bake_plays import L, R, chart, context, pad, play
@@ -121,3 +122,15 @@ def test_arms_and_chest_are_held_differently_every_few_seconds(waiting: WaitMoti
     assert (ahead.max(axis=0) > 0.08).all() and (ahead.min(axis=0) < 0.02).all()
     assert np.ptp(np.degrees(waiting.turn[inner])) > 5.0
     assert np.abs(np.diff(waiting.turn[inner])).max() < np.radians(0.5)  # a frame
+
+
+def test_a_heel_that_holds_a_note_does_not_tap() -> None:
+    """A bracket held for half a minute: heel on one panel, toes on another; heels of the other foot may tap."""
+    events = [(FIRST, {3: R}), (FIRST + 0.5, {0: L, 2: L}), (45.0, {3: R}), (45.5, {0: L})]
+    holds = {(1, 0): 44.0, (1, 2): 44.0}
+    dance = play(events, holds=holds, brackets={(1, 0): Part.HEEL, (1, 2): Part.TOE})
+    motion = bake(chart().timing, dance, pad(), settings=STANDING)
+    measured = report(motion)
+    assert measured["contacts missed"].value == 0.0, measured.notes
+    light = waiting_at(plan_of(chart().timing, dance, pad(), settings=STANDING), TIMES, beaten()).heels[:, 0]
+    assert np.degrees(light[TIMES < 43.0].max()) > 5.0, "she waits with a heel up where none holds"
