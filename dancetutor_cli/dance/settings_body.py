@@ -274,6 +274,7 @@ class WaitSettings:
     neck: Degrees
     heel: Degrees
     stretch: Degrees
+    stretch_long: Ratio
     stretch_other: Ratio
     stretch_out: Metres
     stretch_up: Metres

@@ -73,8 +73,9 @@ def waiting_at(plan: Plan, times: Array, context: Context) -> WaitMotion:
         out.hands[:, hand] += up[:, None] * [0.0, numbers.held_up, numbers.held_ahead]
     for number in range(int(np.floor(first / numbers.every)) - 1, int(np.floor(last / numbers.every)) + 1):
         act = _draw(song, number)
-        start = numbers.every * (number + act.late)
-        end = start + numbers.lasts * act.long
+        long = numbers.stretch_long if _KINDS[act.kind] is _stretch else 1.0
+        start = numbers.every * (number + act.late / long)
+        end = min(start + numbers.lasts * act.long * long, numbers.every * (number + 1))
         if any(a <= start and end <= b for a, b in spans):
             near = slice(*np.searchsorted(times, (start, end)).tolist())
             side = act.side ^ plan.lead
@@ -226,7 +227,8 @@ def _tap(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> None
 
 def _stretch(out: WaitMotion, near: slice, act: _Act, numbers: WaitSettings) -> None:
     """Stretch the arms up aside, one over the head and the other not as far, and lower them again."""
-    up = np.sin(np.pi * act.times / act.long) ** 2
+    third = act.long / 3
+    up = smooth(act.times / third) * smooth((act.long - act.times) / third)
     for hand, sign in ((0, 1.0), (1, -1.0)):
         turn = np.radians(numbers.stretch) * up * (1.0 if hand == act.side else numbers.stretch_other)
         out.hands[near, hand, 0] += sign * numbers.stretch_out * np.sin(turn)
