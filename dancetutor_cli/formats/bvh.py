@@ -20,6 +20,7 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.run.errors import FileError
 from dancetutor_cli.run.files import write_atomic
+from dancetutor_cli.run.reading import read_bytes
 
 MAX_FILE = 100_000_000  # bytes
 MAX_JOINTS = 1024
@@ -179,14 +180,7 @@ def _frame_lines(motion: Motion, times: Array, order: list[int], units_per_metre
 
 
 def _lines(path: Path) -> list[str]:
-    try:
-        if path.stat().st_size >= MAX_FILE:
-            raise FileError(path, "is too large for a BVH file; the limit is 100 MB")
-        return path.read_text("utf-8", errors="replace").splitlines()
-    except FileNotFoundError:
-        raise FileError(path, "no such file or folder") from None
-    except OSError as error:
-        raise FileError(path, f"cannot be read: {error.strerror}") from error
+    return read_bytes(path, MAX_FILE).decode("utf-8", errors="replace").splitlines()
 
 
 def _hierarchy(path: Path, lines: list[str]) -> tuple[list[_Joint], int]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -163,6 +165,20 @@ def test_broken_files_say_what_is_wrong(tmp_path: Path, text: str, says: str) ->
         read_bvh(path)
     assert says in str(error.value)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")
+def test_a_pipe_does_not_hang(tmp_path: Path) -> None:
+    path = tmp_path / "a.bvh"
+    os.mkfifo(path)
+    # a reader that waits for a writer gets one after 5 s, so that it fails and does not stop the suite
+    writer = threading.Timer(5, lambda: os.close(os.open(path, os.O_RDWR)))
+    writer.start()
+    try:
+        with pytest.raises(FileError, match="named pipe"):
+            read_bvh(path)
+    finally:
+        writer.cancel()
 
 
 def test_a_good_file_turns_the_leg(tmp_path: Path) -> None:
