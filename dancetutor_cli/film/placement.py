@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from dancetutor_cli.film.overlay.sprites import WordStyle
     from dancetutor_cli.film.plan import FilmPlan
 
-SQUARE = 2.5  # maximum panel widths between the outer columns of a pad of one square
 LEGEND_OFF = 14.0  # pixels between the song's words and a legend below them
 RUNS_TOP, RUNS_BOTTOM = 0.84, 0.93  # shares of the picture's height: the name of a run without a box or a header
 RUNS_OFF = 9.0  # pixels between the header and the name of a run
@@ -49,7 +48,7 @@ class PartBoxes:
     def of(cls, plan: FilmPlan) -> PartBoxes:
         """Return the boxes of a film."""
         columns = len(plan.directions)
-        square = plan.pad is not None and float(np.ptp(np.asarray(plan.pad.panels)[:, 0])) < SQUARE
+        square = plan.pad is not None and len(plan.pad.squares) == 1
         return cls(plan.look.layout, plan.look.size, min(columns, WIDE_PAD) if square else columns)
 
     @property

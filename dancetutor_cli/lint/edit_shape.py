@@ -111,7 +111,7 @@ class Shape:
         most : most rows of a phrase; begins : rows in which the dancer begins again, so a phrase may end before them
         """
         mirror = self._pad.mirror_columns(left_right=True)
-        if mirror is None or float(np.ptp(self._pad.panels[:, 0])) > 2.0 or row not in self._place:
+        if mirror is None or len(self._pad.squares) > 1 or row not in self._place:
             return
         at, found = self._place[row], list[Edit]()
         for first, last in _phrases(at, len(self.rows), most):
@@ -200,7 +200,7 @@ class Shape:
     def _sides(self) -> set[int]:
         """The panels that lie to one side of the middle of their pad."""
         x = self._pad.panels[:, 0]
-        half = len(x) // 2 if np.ptp(x) > 2.0 else len(x)
+        half = len(x) // 2 if len(self._pad.squares) > 1 else len(x)
         return {n for n in range(len(x)) if abs(x[n] - x[n // half * half :][:half].mean()) > 0.25}
 
     # Places where the same motif returns, and rows where two dancers step the same.
