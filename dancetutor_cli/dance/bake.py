@@ -156,7 +156,7 @@ def _pose_states(
 def pose_body(
     plan: Plan, body: Trajectory, sampled: tuple[Array, Feet], context: Context, free_hands: FreeHands
 ) -> Poses:
-    """Solve the body at times (f,), and move it until its centre of mass, with the head, is on its path.
+    """Solve the body at times (f,), and move it until its centre of mass, with the gaze and the layers, is on its path.
 
     sampled : the times, and the feet at these times; free_hands : at the body's times
     """
@@ -184,9 +184,10 @@ def pose_body(
     look(trial, body, at, context)
     add_layers(trial, at, doing, context)
     mass = mass_of(skeleton, poses)
-    head = mass_of(skeleton, trial) - mass  # hardly changes as the body is moved
+    # of the mass, by the gaze and the layers; hardly changes as the body is moved
+    look_shift = mass_of(skeleton, trial) - mass
     for k in range(CORRECTIONS):
-        targets = translated(targets, goal - head - (mass if k == 0 else mass_of(skeleton, poses)))
+        targets = translated(targets, goal - look_shift - (mass if k == 0 else mass_of(skeleton, poses)))
         poses = solve_poses(skeleton, targets, reach, 0.0)
     rises = heels_may_rise(plan, at, settings.step.press_time)
     rolled = rolled_soles(skeleton, plan, (at, feet, targets, poses), rises)

@@ -199,7 +199,7 @@ def waits(plan: Plan, mines: Array, least: float) -> list[tuple[float, float]]:
 # A walk between the pads takes about three seconds. In a shorter wait dancers step aside, close, and step aside again,
 # so a normal step reaches the notes, without a leap. They also do not wait with one foot on each pad.
 
-SPREAD_STEP = 0.04  # metres between the candidate places for stepping aside
+SPREAD_STEP = 0.04  # metres between the distances of the feet that are tried, `narrow` to `wide`
 
 
 @dataclass(frozen=True, slots=True)

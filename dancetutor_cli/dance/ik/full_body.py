@@ -35,7 +35,7 @@ from dancetutor_cli.run.kernels.compiling import njit, njit_inner
 
 ARM_REACH = 0.990  # the longest reach of a hand, as a part of the arm's length
 LOW, HIGH = SPINE_SHARES
-ROUNDING = 0.03  # metres that the middle of the spine is bent backward before the solver starts
+BACK_ROUNDING = 0.03  # metres that the middle of the spine is bent backward before the solver starts
 PULL_LEGS = 60  # rounds of pulling the root until both legs reach
 PULL_ROUNDS = 24  # rounds of pulling the body after a pinned palm
 
@@ -106,6 +106,7 @@ class ArmGoal(NamedTuple):
 
 
 def rig_of(skeleton: Skeleton, reach: float = 0.0, follow: float = 0.0) -> Rig:
+    """Return the data of a skeleton for the kernels. reach, follow : as in `solve_poses`"""
     joints = np.array([skeleton.index(name) for name in NAMES])
     upper, lower = (float(np.linalg.norm(skeleton.offsets[joints[ARM + k]])) for k in (2, 3))
     return Rig(skeleton.offsets, joints, _hinges(skeleton, joints), upper + lower, float(reach), float(follow))
@@ -193,8 +194,8 @@ def _torso(
     p1 = add(root, qrot(pelvis, _vec(offsets[joints[VL5]])))
     q1, q2 = qlerp(pelvis, chest, LOW), qlerp(pelvis, chest, HIGH)
     # a back that is pushed together always rounds backward; otherwise it would snap from side to side
-    p2 = add(p1, add(qrot(q1, o10), qrot(q1, (0.0, 0.0, -ROUNDING))))
-    p3 = add(p2, add(qrot(q2, o4), qrot(q2, (0.0, 0.0, -0.5 * ROUNDING))))
+    p2 = add(p1, add(qrot(q1, o10), qrot(q1, (0.0, 0.0, -BACK_ROUNDING))))
+    p3 = add(p2, add(qrot(q2, o4), qrot(q2, (0.0, 0.0, -0.5 * BACK_ROUNDING))))
     middle = scale(add(left, right), 0.5)
     p2, p3, p4 = _chain(p1, (p2, p3), middle, (length(o10), length(o4), length(rest_mid)))
     q3 = _chest(unit(sub(p4, p3)), sub(left, right), unit(rest_mid))
@@ -211,6 +212,13 @@ def _aim(q: Quat, bone: Vec, direction: Vec) -> Quat:
 
 @njit(cache=True)
 def solve_frames(rig: Rig, trunk: Trunk, hands: ArmTargets, legs: LegTargets, rotations: Array) -> None:
+    """Solve all f frames; write the local `rotations` (f, j, 4) of the joints in `NAMES`, and move the root in place.
+
+    Order of work in a frame (docs/motion.md): the root is pulled until both legs reach their feet. FABRIK (Aristidou
+    and Lasenby 2011) bends the torso, a chain that forks into two shoulders. Shoulders whose pinned palm is out of
+    reach are pulled after it. Then come the rotations of the torso, and closed-form limbs with a pole and a knee that
+    stays soft.
+    """
     offsets, joints = rig.offsets, rig.joints
     hips = (_vec(offsets[joints[LEG]]), _vec(offsets[joints[LEG + 4]]))
     most = rig.arm * ARM_REACH
@@ -296,17 +304,13 @@ def _leg(at: tuple[int, int], hip: Vec, pelvis: Quat, rig: Rig, legs: LegTargets
 
 @njit(cache=True)
 def one_arm(rig: Rig, side: int, goal: ArmGoal, out: Array) -> None:
+    """Solve one arm, with a pinned hand, in f cases. side : 0 left, 1 right; out : local rotations (f, j, 4), written"""
     hands = ArmTargets(np.zeros((1, 2, 3)), np.zeros((1, 2, 4)), np.ones((1, 2)), np.zeros((1, 2)), np.zeros((1, 2, 3)))
     for f in range(len(goal.shoulders)):
         hands.wrists[0, side] = goal.wrists[f]
         hands.rotation[0, side] = goal.hands[f]
         hands.elbows[0, side] = goal.elbows[f]
         _arm((0, side), _vec(goal.shoulders[f]), _quat(goal.chest[f]), rig, hands, out[f])
-
-
-# Order of work in a frame (docs/motion.md): the root is pulled until both legs reach their feet. FABRIK (Aristidou and
-# Lasenby 2011) bends the torso, a chain that forks into two shoulders. Shoulders whose pinned palm is out of reach are
-# pulled after it. Then come the rotations of the torso, and closed-form limbs with a pole and a knee that stays soft.
 
 
 @dataclass(frozen=True, slots=True)
