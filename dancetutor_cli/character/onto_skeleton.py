@@ -1,6 +1,6 @@
 """The dancer's motion on another character: the same world rotations, with feet and pressing hands at the same places.
 
-A fitted character (`fitting.fit_character`) rests as the dancer does with identity rotations, so a world rotation
+A fitted character (`characters.fit_character`) rests as the dancer does with identity rotations, so a world rotation
 delta is the world rotation itself. Legs are then solved in closed form with the character's own lengths, so that its
 soles stand where hers do.
 """
