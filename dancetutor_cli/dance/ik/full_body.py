@@ -304,7 +304,7 @@ def _leg(at: tuple[int, int], hip: Vec, pelvis: Quat, rig: Rig, legs: LegTargets
 
 @njit(cache=True)
 def one_arm(rig: Rig, side: int, goal: ArmGoal, out: Array) -> None:
-    """Solve one arm, with a pinned hand, in f cases. side : 0 left, 1 right; out : local rotations (f, j, 4), written"""
+    """Solve one arm, its hand pinned, in f cases. side : 0 left, 1 right; out : local rotations (f, j, 4), written"""
     hands = ArmTargets(np.zeros((1, 2, 3)), np.zeros((1, 2, 4)), np.ones((1, 2)), np.zeros((1, 2)), np.zeros((1, 2, 3)))
     for f in range(len(goal.shoulders)):
         hands.wrists[0, side] = goal.wrists[f]
