@@ -1,4 +1,4 @@
-"""The film's clock: the runs of a film, the second of the music that each frame shows, and blocks of joints."""
+"""The film's clock: the passes of a film, the second of the music that each frame shows, and blocks of joints."""
 
 from __future__ import annotations
 
@@ -22,10 +22,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Pass:
-    """One run through a stretch of the music. start, end : seconds of the music; rate : 0.5 is half speed.
+    """A pass through a stretch of the music; a practice film shows its number and speed to players as a run.
 
+    start, end : seconds of the music; rate : 0.5 is half speed
     sound_from : the music is silent before this second, while `count` beats are counted in
-    rest : seconds of the music at the end of the run, in which nobody steps, the music fades and the dancer comes to
+    rest : seconds of the music at the end of the pass, in which nobody steps, the music fades and the dancer comes to
         rest
     """
 
@@ -38,16 +39,16 @@ class Pass:
 
     @property
     def until(self) -> float:
-        """The second of the music up to which the notes of this run are danced."""
+        """The second of the music up to which the notes of this pass are danced."""
         return self.end - self.rest
 
     @property
     def seconds(self) -> float:
-        """The length of this run in the film, seconds."""
+        """The length of this pass in the film, seconds."""
         return self.film_seconds(self.end)
 
     def film_seconds(self, second: float) -> float:
-        """Return the seconds of the film from the beginning of this run to a second of the music."""
+        """Return the seconds of the film from the beginning of this pass to a second of the music."""
         return heard_second(second - self.start, self.rate)
 
 
@@ -129,7 +130,7 @@ class PictureClock(Clock):
         return self.times[frame], 0
 
 
-# The runs of a film: their stretch of the music, number and speed, with count-in, claps and metronome.
+# The passes of a film: their stretch of the music, number and speed, with count-in, claps and metronome.
 
 LEAD_IN, LEAD_OUT = 2.0, 3.0  # seconds before the first and after the last note
 REST = 2.2  # seconds of film after a passage, in which the dancer can step home, stand and smile
@@ -139,10 +140,10 @@ COUNTABLE = (0.3, 1.6)
 
 @dataclass(frozen=True, slots=True)
 class Practice:
-    """Aids for practice. loop : number of runs (0: one for each rate)
+    """Aids for practice. loop : number of passes (0: one for each rate)
 
-    count_in : beats counted before each run
-    rest : seconds of film after the last run, in which the dancer comes to rest
+    count_in : beats counted before each pass
+    rest : seconds of film after the last pass, in which the dancer comes to rest
     claps : a clap on each step; metronome : a tick on each beat
     """
 
@@ -167,7 +168,7 @@ def parse_rates(text: str) -> tuple[float, ...]:
 
 
 def passes_of(chart: Chart, practice: Practice, rates: tuple[float, ...], start: float, end: float) -> tuple[Pass, ...]:
-    """Return the runs through a section, at each of the rates in turn, each with its count-in.
+    """Return the passes through a section, at each of the rates in turn, each with its count-in.
 
     With a count-in, the measures without steps at the beginning of the section are left out. A count-in counts beats,
     or half or double beats if beats are too slow or too fast to count.
@@ -178,12 +179,12 @@ def passes_of(chart: Chart, practice: Practice, rates: tuple[float, ...], start:
         beat = 60 / chart.timing.bpm_at(round(float(chart.timing.beats(np.array([start]))[0]) * TICKS_PER_BEAT))
         lead = practice.count_in * _count_in_interval(beat, min(rates))
     count = practice.loop or len(rates)
-    runs = [
+    passes = [
         Pass(start - lead, end, rates[i % len(rates)], start if lead else -math.inf, practice.count_in)
         for i in range(count)
     ]
-    rest = practice.rest * runs[-1].rate
-    return (*runs[:-1], replace(runs[-1], end=end + rest, rest=rest))
+    rest = practice.rest * passes[-1].rate
+    return (*passes[:-1], replace(passes[-1], end=end + rest, rest=rest))
 
 
 def _count_in_interval(beat: float, rate: float) -> float:

@@ -169,7 +169,7 @@ class Film:
 
     def frame(self, number: int) -> Frame:
         """Draw frame `number` of the film, uint8 (h, w, 3)."""
-        second, run = self.plan.clock.at(number)
+        second, pass_number = self.plan.clock.at(number)
         beat = float(self.plan.beats[number])
         picture = self.base.copy()
         if self.layout.dancer and self.plan.motions:
@@ -179,33 +179,33 @@ class Film:
             self.highway.draw(picture, second, beat, self._speed(number))
         large, small = self._diagrams
         if large:
-            seen = self._stay(large, run).opacity(second)
+            seen = self._stay(large, pass_number).opacity(second)
             large.draw(picture, second, self._dancer.feet(self._joints.at(number)), seen)
         if small:
             small.draw(picture, second)
         place = self.placement
         for words in (*(place.header.parts if place.header else ()), place.legend):
             if words:
-                words.draw(picture, self._stay(words, run).opacity(second))
+                words.draw(picture, self._stay(words, pass_number).opacity(second))
         for moving in (self._progress, place.calls):
             if moving:
                 moving.draw(picture, second)
-        place.runs.draw(picture, second, run, self._stay(place.runs, run).opacity(second))
+        place.runs.draw(picture, second, pass_number, self._stay(place.runs, pass_number).opacity(second))
         return darkened(picture, BACKGROUND, self.plan.light(number))
 
-    def _stay(self, words: MakesWay, run: int) -> Stay:
+    def _stay(self, words: MakesWay, pass_number: int) -> Stay:
         """Return the time in which these words are in the picture: they are hidden while the dancer walks past them."""
-        if (words, run) not in self._stays:
-            self._stays[words, run] = self._stay_of_run(words.boxes, run)
-        return self._stays[words, run]
+        if (words, pass_number) not in self._stays:
+            self._stays[words, pass_number] = self._stay_in_pass(words.boxes, pass_number)
+        return self._stays[words, pass_number]
 
-    def _stay_of_run(self, boxes: list[Box], run: int) -> Stay:
+    def _stay_in_pass(self, boxes: list[Box], pass_number: int) -> Stay:
         if not (self.layout.dancer and self.plan.motions and boxes):
             return Stay()
         left, top, right, bottom = self.boxes.box("dancer")
         inside = [(max(a, left), max(b, top), min(c, right), min(d, bottom)) for a, b, c, d in boxes]
         there = [(a - left, b - top, c - left, d - top) for a, b, c, d in inside if a < c and b < d]
-        one = self.plan.clock.passes[run]
+        one = self.plan.clock.passes[pass_number]
         return stay_of(
             one, self.plan.presses, lambda seconds, step: self._dancer.walks_behind(there, seconds, step, one.rate)
         )

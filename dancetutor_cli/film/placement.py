@@ -251,7 +251,7 @@ def _heights(box: PixelBox, taken: NDArray[np.float64], edge: float) -> list[int
 
 # Words that the dancer walks through on her way onto the pad or off it are hidden until she has passed.
 
-FADE = 0.3  # seconds of the film in which words come and go
+WORDS_FADE = 0.3  # seconds of the film in which words come and go
 PASSING_STEP = 1 / 15  # seconds of the film between the moments that are checked
 MOST_PASSING = 3000  # maximum number of these moments
 Covered = Callable[[NDArray[np.float64], float], NDArray[np.bool_]]
@@ -267,7 +267,7 @@ class Stay:
 
     def opacity(self, second: float) -> float:
         """Return the opacity of the words, 0 to 1."""
-        return min(1.0, max(0.0, min(second - self.since, self.until - second) / (FADE * self.rate)))
+        return min(1.0, max(0.0, min(second - self.since, self.until - second) / (WORDS_FADE * self.rate)))
 
 
 def stay_of(one: Pass, presses: Presses, covered: Covered) -> Stay:

@@ -19,7 +19,7 @@ from dancetutor_cli.film.clock import Clock, Pass
 from dancetutor_cli.film.film import Film
 from dancetutor_cli.film.layout import FilmLook, load_layout
 from dancetutor_cli.film.notes import Callout, Presses
-from dancetutor_cli.film.placement import FADE, PASSING_STEP, stay_of
+from dancetutor_cli.film.placement import PASSING_STEP, WORDS_FADE, stay_of
 from dancetutor_cli.film.scene.camera import Camera
 from dancetutor_cli.film.scene.visibility import Silhouette
 
@@ -39,7 +39,8 @@ def test_words_come_when_she_has_passed_and_go_before_she_comes_back() -> None:
     one = stay_of(Pass(0.0, 20.0), presses(5.0, 15.0), covered)
     assert one.opacity(0.0) == one.opacity(1.99) == one.opacity(18.01) == one.opacity(20.0) == 0
     assert all(
-        one.opacity(t) == 1 for t in (2.0 + 2 * PASSING_STEP + FADE, 5.0, 10.0, 15.0, 18.0 - 2 * PASSING_STEP - FADE)
+        one.opacity(t) == 1
+        for t in (2.0 + 2 * PASSING_STEP + WORDS_FADE, 5.0, 10.0, 15.0, 18.0 - 2 * PASSING_STEP - WORDS_FADE)
     )
 
 
@@ -52,7 +53,7 @@ def test_words_that_nobody_passes_always_stand() -> None:
 def test_at_half_speed_they_come_as_slowly_as_at_full() -> None:
     one = stay_of(Pass(0.0, 20.0, 0.5), presses(5.0), lambda t, _: t < 2.0)
     ramp = [t for t in np.arange(2.0, 3.0, 0.001) if 0 < one.opacity(t) < 1]
-    assert ramp[-1] - ramp[0] == pytest.approx(0.5 * FADE, abs=0.01)
+    assert ramp[-1] - ramp[0] == pytest.approx(0.5 * WORDS_FADE, abs=0.01)
 
 
 def test_all_of_her_is_inside_her_silhouette() -> None:

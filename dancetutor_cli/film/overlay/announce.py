@@ -61,13 +61,13 @@ class Runs:
         """The boxes of the labels: left, top, right, bottom."""
         return [box_of(label, *self._corner(label)) for label in self.labels]
 
-    def draw(self, frame: Frame, second: float, run: int, opacity: float = 1.0) -> None:
-        """Draw the label and the count-in at `second` of the music in pass `run`; opacity : opacity of the label."""
+    def draw(self, frame: Frame, second: float, pass_number: int, opacity: float = 1.0) -> None:
+        """Draw the label and the count-in at `second` of the music in a pass; opacity : opacity of the label."""
         if self.labels:
-            label = self.labels[run]
+            label = self.labels[pass_number]
             x, y = self._corner(label)
             draw_sprite(frame, label, x, round(y), opacity)
-        one = self.clock.passes[run]
+        one = self.clock.passes[pass_number]
         if one.count and second < one.sound_from - 1e-6:
             left = (one.sound_from - second) / (one.sound_from - one.start) * one.count
             number = self.numbers[min(one.count, max(1, math.ceil(left - 1e-6)))]

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from dancetutor_cli.lint.findings import Finding
 
 
-FADE = 0.6  # seconds in which the picture goes dark at the end of a film, or before a GIF starts again
+PICTURE_FADE = 0.6  # seconds in which the picture goes dark at the end of a film, or before a GIF starts again
 HIGH = "front-high"  # the camera of configs/picture.yaml for characters who hide their feet from behind
 
 
@@ -89,7 +89,7 @@ def prepare(request: FilmRequest, subject: FilmSubject) -> PreparedFilm:
         character=character,
         callouts=() if request.background else _callouts(dance, _calls(look), scrolls),
         cues=tuple(_cues(dance, look)),
-        fade=FADE if request.practice.rest and not request.background else 0.0,
+        fade=PICTURE_FADE if request.practice.rest and not request.background else 0.0,
     )
     notes = [note for rate, some in motions.items() for motion in some for note in _at_rate(rate, motion.notes)]
     warnings = (*notes, *title_warnings(song, plan.words, request.look.font))
