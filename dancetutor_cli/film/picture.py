@@ -26,6 +26,10 @@ class PadLike(Protocol):
     def centre(self) -> tuple[float, float]:
         """The point at which the dancer stands at the start."""
 
+    @property
+    def squares(self) -> NDArray[np.float64]:
+        """The middle of each square of panels, (s, 2)."""
+
 
 @dataclass(frozen=True, slots=True)
 class FootFromAbove:
