@@ -187,10 +187,11 @@ class BareFloor:
     panels: Array
     arrows: Array
     centre: tuple[float, float]
+    squares: Array
 
 
 def floor_under(root: Array) -> BareFloor:
     """Return a floor around the path (f, 3) of one or more roots, metres."""
     low, high = root[:, [0, 2]].min(axis=0) / PANEL, root[:, [0, 2]].max(axis=0) / PANEL
     corners = np.array([[-high[0] - ROOM, low[1] - ROOM], [-low[0] + ROOM, high[1] + ROOM]])
-    return BareFloor(np.round(corners), np.zeros((2, 2)), (0.0, 0.0))
+    return BareFloor(np.round(corners), np.zeros((2, 2)), (0.0, 0.0), np.zeros((1, 2)))
