@@ -55,7 +55,6 @@ REASONS = {
     "page/capture.py": "needs the film of a motion, which a page of a chart does without",
     "commands/option_groups.py": "the commands use it, which the list of commands does not import",
     "run/markup.py": "pages and reports use it, which know nothing of each other",
-    "dance/ik/trunk.py": "hands and targets change now; then it joins them or the knees",
 }  # fmt: skip
 
 

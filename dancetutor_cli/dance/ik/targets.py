@@ -20,6 +20,7 @@ from dancetutor_cli.dance.ik.hands import (
     lead_hands_to_bar,
     leg_clearance,
     palm_down,
+    trunk_at,
     trunk_clearance,
 )
 from dancetutor_cli.dance.ik.knees import (
@@ -28,7 +29,6 @@ from dancetutor_cli.dance.ik.knees import (
     knee_poles,
     part_knees,
 )
-from dancetutor_cli.dance.ik.trunk import trunk_at
 from dancetutor_cli.dance.plan import Plan, Press
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import SIDES, half_hips, palm_points
