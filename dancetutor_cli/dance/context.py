@@ -94,7 +94,7 @@ class Context:
     skeleton : of the dancer; settings : the numbers of her motion
     panels : (c, 2) world x and z of every panel's centre; squares : (s, 2) of the middle of each square of nine panels
     ground : the pad as a rectangle, and the floor around it
-    beats : seconds of the song's beats, in order; bar : the bar that she holds, None for no bar
+    beats : seconds of the song's beats, slow ones divided, in order; bar : the bar that she holds, None for no bar
     stays : whether she does not walk off after the last step; course : settings that change over the song, None:
     constant
     person : 0 for a single dancer, else her number beside the other one: each has her own random choices and phase

@@ -9,10 +9,11 @@ from functools import lru_cache
 import numpy as np
 
 from dancetutor_cli.dance.context import Context
-from dancetutor_cli.dance.plan import Jump, Move, Plan, Sidestep, Step, Swing, WalkStep, chance_of
+from dancetutor_cli.dance.plan import Move, Plan, Sidestep, Step, Swing, chance_of
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_body import GrooveSettings, LayerSettings
 from dancetutor_cli.dance.smoothing import smooth, smooth_path
+from dancetutor_cli.dance.trajectory.height import LOWEST, step_landings
 from dancetutor_cli.dance.units import Array
 
 # The dancer hears the music: between slow steps and in waits, knees and chest give a little on every beat.
@@ -60,14 +61,14 @@ def dancing(tempo: Array, busy: Array, layers: LayerSettings) -> Array:
 SEED = 20020716
 OVERSHOOT = 0.1  # share by which a smoothed path may overshoot its goal; the largest measured overshoot is 0.06
 MOST_LOST = 6.0  # largest factor by which the wanted bob is enlarged, because smoothing the height reduces it
-BEAT = 0.5  # seconds from beat to beat at which the dancer bobs by `groove.bob`; slower beats have a larger bob
+BEAT = (
+    0.5  # seconds from pulse to pulse at which the dancer bobs by `groove.bob`, and at slower ones; quicker ones less
+)
 BEATS, STEPS = 0.6, 0.07  # how much hands pump with the beat, and seconds over which they go with a step
-SLOWEST = 0.5  # seconds from beat to beat; the bob of slower beats is no larger
 PULSE_SHORTEST = 0.30  # seconds from one pulse of the bob to the next at least
 ON_BEAT = 0.05  # seconds from a beat within which a step is on it
-CENTRE = 0.75  # how far the middle of the bob is lowered, as a part of half of it
+CENTRE = 0.75  # by this part of half the bob the middle of it is lower than the height without it
 WITHOUT_STEP = 0.45  # a beat without a step is danced this part as deep as one with a step
-LOWEST = 0.42  # part of the time between two pulses at which she is lowest
 NEAR_JUMPS = 0.5  # seconds before and after a jump in which the bob is smaller
 CALM = 0.4  # share of the sway that stops where the dancer comes to rest
 MOSTLY = 0.6  # share of the time, from `groove.mostly` (0) to always (1), in which the trunk moves as in jacks
@@ -78,7 +79,7 @@ class Groove:
     """The dancer's movements to the beat at n times.
 
     beat : (n,) 0 to 1, how far the body has given way to the beat; sink : (n,) metres that the knees give
-    bob : (n,) metres by which the height is lowered on beats before smoothing, which leaves `groove.bob` of it
+    bob : (n,) metres by which the height is lowered on pulses before smoothing, which leaves `groove.bob` of it
     sway : (n,) about -1 to 1, to which side the shoulders lean and turn, positive left
     pump : (n,) the same for hands in streams, where the shoulders keep still: with the beat and with the steps
     grounded : (n,) 0 near jumps, where both arms go up and down together, to 1
@@ -138,11 +139,12 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
 
 
 def _bob(plan: Plan, context: Context, times: Array, tempo: Array) -> Array:
-    """Return by how much (n,) the height has to be lowered on pulses, metres, on average half of what remains of it.
+    """Return by how much (n,) the height has to be lowered on pulses, metres: on average by `CENTRE` halves of what
+    remains of it.
 
     Smoothing the height leaves 1 / (1 + (2 pi T / every)^6) of a movement that comes and goes with pulses `every`
     seconds apart. T is the time constant of `height.height_path`. So the movement is enlarged by the inverse, and the
-    knees bend no more for it on average. tempo : (n,) as in `height`
+    knees bend no more for that on average. tempo : (n,) as in `height`
     """
     body, late = context.settings.body, context.settings.layers.beat_late
     at = pulses(plan, heard_beats(context.beats, context.settings.layers.beat_shortest), PULSE_SHORTEST)
@@ -154,7 +156,7 @@ def _bob(plan: Plan, context: Context, times: Array, tempo: Array) -> Array:
     quick = np.interp((lows[1:] + lows[:-1]) / 2, times, tempo)
     constant = body.height_calm + (body.height_smooth - body.height_calm) * quick
     lost = np.minimum((2.0 * np.pi * constant / every) ** 6, MOST_LOST)
-    far = context.settings.groove.bob * np.minimum(every, SLOWEST) / BEAT / 2.0
+    far = context.settings.groove.bob * np.minimum(every / BEAT, 1.0) / 2.0
     low, high = far * (CENTRE + 1.0 + lost), far * (CENTRE - 1.0 - lost)
     low = (np.append(low[:1], low) + np.append(low, low[-1:])) / 2.0
     low *= np.where(distances(at, step_landings(plan)) < ON_BEAT, 1.0, WITHOUT_STEP)
@@ -191,12 +193,6 @@ def pulses(plan: Plan, beats: Array, shortest: float) -> Array:
             if all(abs(second - other) >= shortest for other in chosen[max(k - 1, 0) : k + 1]):
                 chosen.insert(k, second)
     return np.array(chosen)
-
-
-def step_landings(plan: Plan) -> Array:
-    """Return the seconds (k,) at which feet land that neither walk nor jump, in order, each once."""
-    moves = (m for track in plan.feet for m in track.moves if isinstance(m, Swing))
-    return np.unique([round(m.land, 4) for m in moves if not isinstance(m, WalkStep | Jump)])
 
 
 def distances(seconds: Array, others: Array) -> Array:

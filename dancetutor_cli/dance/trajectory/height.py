@@ -21,7 +21,7 @@ from dancetutor_cli.dance.units import Array, Flags
 # How low the dancer stands: on bent knees in streams, lower before and after jumps, and the lean in a jump.
 
 
-LOWEST = 0.42  # part of the time between two landings at which the dancer is lowest
+LOWEST = 0.42  # part of the time between two landings, or pulses of the beat, at which the dancer is lowest
 GIVES, RISEN = 0.4, 2.0  # parts of that time at which she begins to go down and at which she is up again
 
 
@@ -71,12 +71,16 @@ def jump_crouch(plan: Plan, times: Array, jump: JumpSettings) -> Array:
     return out
 
 
+def step_landings(plan: Plan) -> Array:
+    """Return the seconds (k,) at which feet land that neither walk nor jump, in order, each once."""
+    return np.unique([swing.land for swing in plan.swings if not isinstance(swing, Jump)])
+
+
 def landing_give(plan: Plan, times: Array, body: BodySettings) -> Array:
     """Return how far (n,) knees give after steps, metres: most a little after a landing, less if the next is soon."""
-    swings = [swing for swing in plan.swings if not isinstance(swing, Jump)]
     lands = sorted({m.land for track in plan.feet for m in track.moves})
     out = np.zeros(len(times))
-    for land in {m.land for m in swings}:
+    for land in step_landings(plan).tolist():
         k = bisect_right(lands, land + 1e-6)
         room = lands[k] - land if k < len(lands) else np.inf
         size = float(smooth((room - body.land_least) / max(body.land_full - body.land_least, 1e-6)))
