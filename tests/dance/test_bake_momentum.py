@@ -62,8 +62,8 @@ def test_the_weight_makes_up_for_legs_that_swing(monkeypatch: pytest.MonkeyPatch
     assert with_it["jerk of the root"].value < without["jerk of the root"].value
 
 
-def test_the_trunk_answers_quick_legs() -> None:
-    """Five and a half steps a second: 0.23 body weights x m when a soft chest came to its lean late."""
-    dance = play([(1.0 + 0.18 * k, {(0, 1, 3, 2, 0, 2, 3, 1)[k % 8]: (L, R)[k % 2]}) for k in range(48)])
-    residual = report(bake(chart().timing, dance, pad()))["residual moment, 99th percentile"]
-    assert residual.value < residual.goal
+def test_the_trunk_answers_quick_legs_at_once() -> None:
+    """Six steps a second leave 0.23 body weights x m; 0.30 if the chest's spring holds the answering lean back."""
+    dance = play([(1.0 + 0.16 * k, {(0, 1, 3, 2, 0, 2, 3, 1)[k % 8]: (L, R)[k % 2]}) for k in range(48)])
+    measured = report(bake(chart().timing, dance, pad()))
+    assert measured["residual moment, 99th percentile"].value < 0.26
