@@ -56,8 +56,8 @@ def cost_at(curve: Curve, milliseconds: NDArray[np.int64]) -> NDArray[np.int64]:
 _SOLVERS = {"thesis": solve_thesis, "itg": solve_itg}
 _NODES_KEPT = 1 << 16  # words for the nodes of a usual chart, reused between charts
 _NODES_A_ROW = 5  # words per row that a long chart is first given, in addition to one word per column
-_MOST_MOVES_KEPT = 500_000  # limit after which the tables start again, so that a long run does not fill the memory
-_MOST_EDGES_KEPT = 500_000  # limit, as for moves
+_MOST_MOVES_KEPT = 2_000_000  # limit after which the tables start again, so that a long run does not fill the memory
+_MOST_EDGES_KEPT = 2_000_000  # limit, as for moves
 _MOST_ENGINES = 8
 
 
