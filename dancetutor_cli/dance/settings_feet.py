@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from dancetutor_cli.dance.units import Count, Degrees, DegreesPerMetre, DegreesPerSecond, Metres, Ratio, Seconds
+from dancetutor_cli.dance.units import (
+    Count,
+    Degrees,
+    DegreesPerMetre,
+    DegreesPerSecond,
+    Metres,
+    MetresPerSecond,
+    Ratio,
+    Seconds,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,6 +27,9 @@ class StepSettings:
     double_support_far: Metres
     hasty: Seconds
     height_slow: Metres
+    height_goes: Metres
+    height_varies: Ratio
+    height_lands: MetresPerSecond
     height_fast: Metres
     height_hasty: Metres
     height_even: Metres
@@ -262,3 +274,5 @@ class HomeSettings:
     facing: Degrees
     turn: Degrees
     most: Count
+    height: Ratio
+    heel: Ratio

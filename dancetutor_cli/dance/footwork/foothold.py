@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from dancetutor_cli.dance.clearance import ANKLE, SHARES, Way, detour, evenness, gaps_at, headings, over
-from dancetutor_cli.dance.context import HALF_PANEL, Spot, ball_of, middle_of, on_panel, room_on
+from dancetutor_cli.dance.context import HALF_PANEL, Context, Spot, ball_of, middle_of, on_panel, room_on
 from dancetutor_cli.dance.foot_path import shoe_path
 from dancetutor_cli.dance.footwork.footing import Footing, FootState
 from dancetutor_cli.dance.motion import Ground
-from dancetutor_cli.dance.plan import Bulge
+from dancetutor_cli.dance.plan import Bulge, chance_of
 from dancetutor_cli.dance.rig.body import BALL_AHEAD, HALF_SHOE, SHOE_OUTLINE
 from dancetutor_cli.dance.settings_feet import StepSettings
 from dancetutor_cli.dance.units import Array
@@ -26,6 +27,7 @@ LATEST = 4  # number of the last swings of a foot that are checked to find its p
 CROSSED_PRICE = 3e3  # weight of a radian by which the legs cross too far
 MIDDLE_PRICE = 1e2  # weight of a metre by which the middle of a shoe is off its panel
 SURELY = 1e-9  # metres; the search stops at this accuracy
+HEIGHTS = 20180611  # of the seeds of how high feet rise
 EDGE_PRICE = 4e2  # weight of a metre by which a shoe reaches over the edge of the pad
 
 
@@ -208,6 +210,22 @@ def _bracket(footing: Footing, foot: FootState, goal: Goal) -> tuple[Array, floa
     askew = np.radians(step.bracket_askew)
     yaw += float(np.clip(np.clip(yaw, body - most, body + most) - yaw, -askew, askew))
     return ball_of((panels[toe] + panels[heel]) / 2, footing.toes(foot, yaw)), yaw
+
+
+def step_height(far: float, land: float, context: Context) -> float:
+    """Return how high a foot rises that has time, metres: higher if it goes farther, and no two steps are alike.
+
+    far : metres that it goes; land : the second at which it lands, the seed of its own height
+    """
+    step = context.settings.step
+    share = step.jack_height + (1.0 - step.jack_height) * min(far / max(step.height_goes, 1e-3), 1.0)
+    own = _draw(round(1000 * land), *context.own)
+    return step.height_slow * share * max(1.0 + step.height_varies * own, 0.0)
+
+
+@lru_cache(maxsize=1024)
+def _draw(*seed: int) -> float:
+    return float(chance_of(HEIGHTS, *seed).uniform(-1.0, 1.0))
 
 
 def heel_up(step: StepSettings, cut: float, heel: Heel, columns: list[int]) -> Pitches:

@@ -173,8 +173,8 @@ def homeward(plan: Plan, span: tuple[float, float], context: Context) -> tuple[l
     places = [(ball, float(yaw)) for ball, yaw in zip(begin.balls, begin.yaws, strict=True)]
     for k, (side, fall) in enumerate(falls):
         start = free + pause + k * long
-        when = start + step.double_support * long, start + long, long
-        moves[side].append(sidestep(when, fall, _bulge(places, side, fall, step), step))
+        way = start + step.double_support * long, start + long, float(np.linalg.norm(fall.ball - places[side][0]))
+        moves[side].append(sidestep(way, fall, _bulge(places, side, fall, step), context))
         places[side] = (fall.ball, fall.yaw)
     return moves, Turn(free + pause, free + pause + len(falls) * long, goal.heading)
 

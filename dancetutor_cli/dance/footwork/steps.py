@@ -9,7 +9,16 @@ import numpy as np
 from dancetutor_cli.dance.clearance import evenness
 from dancetutor_cli.dance.context import HALF_PANEL, PANEL
 from dancetutor_cli.dance.footwork.flights import Goals, galloping, hop, leap, take_off_for, tuck_for
-from dancetutor_cli.dance.footwork.foothold import Goal, Pose, heel_of_step, heel_up, landing_place, pose, swing_detour
+from dancetutor_cli.dance.footwork.foothold import (
+    Goal,
+    Pose,
+    heel_of_step,
+    heel_up,
+    landing_place,
+    pose,
+    step_height,
+    swing_detour,
+)
 from dancetutor_cli.dance.footwork.footing import Footing, FootState, Proposal, Row, TakeOff, pair
 from dancetutor_cli.dance.footwork.mines import flown_on, landed_early, resumed, stayed_up, wait_for_other_foot
 from dancetutor_cli.dance.plan import Gallop, Hover, Jump, Step, Swing
@@ -191,9 +200,8 @@ def _kind(
     fast = numbers.height_fast + row.haste * (numbers.height_hasty - numbers.height_fast)
     fast += row.haste * float(evenness(duration, numbers)) * (numbers.height_even - numbers.height_hasty)
     fast += numbers.height_far * max(far - numbers.far, 0.0)
-    height = numbers.height_slow + row.cut * (fast - numbers.height_slow)
-    if far < numbers.on_the_spot:
-        height = max(height * numbers.jack_height, fast)
+    slow = step_height(far, row.time, row.context)
+    height = max(slow + row.cut * (fast - slow), numbers.height_lands * duration / (np.pi * max(numbers.rising, 0.2)))
     kind: type[Swing] = Step
     if hovering:
         kind, height = Hover, max(height, mines.height)

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dancetutor_cli.dance.clearance import reduction
 from dancetutor_cli.dance.context import HALF_PANEL, Context
 from dancetutor_cli.dance.footwork.footfalls import (
     Footfall,
@@ -20,11 +19,11 @@ from dancetutor_cli.dance.footwork.footfalls import (
     shoe_gap,
     stand_at,
 )
-from dancetutor_cli.dance.footwork.foothold import heel_of_step, heel_up, swing_detour
+from dancetutor_cli.dance.footwork.foothold import heel_of_step, heel_up, step_height, swing_detour
 from dancetutor_cli.dance.footwork.footing import Footing, FootState, Proposal, Row, pair
 from dancetutor_cli.dance.motion import Ground
 from dancetutor_cli.dance.plan import STRAIGHT, Bulge, FootTrack, Hover, Plan, Press, Sidestep, Swing, Turn
-from dancetutor_cli.dance.settings_feet import AsideSettings, StepSettings
+from dancetutor_cli.dance.settings_feet import AsideSettings
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play, StepKind
@@ -334,16 +333,20 @@ def with_sidestep(footing: Footing, foot: FootState, fall: Footfall, start: floa
     step = footing.settings.step
     lift = max(start + step.double_support * duration, foot.free)
     bulge = swing_detour(footing, foot, (lift, start + duration), fall.ball, fall.heading, footing.other(foot))
-    aside = sidestep((lift, start + duration, duration), fall, bulge, step)
+    far = float(np.linalg.norm(fall.ball - foot.ball))
+    aside = sidestep((lift, start + duration, far), fall, bulge, footing.context)
     return footing.with_foot(replace(foot.with_move(aside, fall.ball, fall.heading), evading=None))
 
 
-def sidestep(when: tuple[float, float, float], fall: Footfall, bulge: Bulge, step: StepSettings) -> Sidestep:
-    """Return the move of a foot that steps aside. when : its lift, its landing, and the whole duration, seconds"""
-    lift, land, duration = when
-    cut = float(reduction(duration, step.fast, step.longest))
-    height = step.height_slow + cut * (step.height_fast - step.height_slow)
-    return Sidestep(lift, land, pair(fall.ball), fall.yaw, heel_up(step, cut, heel_of_step(step), [0]), height, bulge)
+def sidestep(way: tuple[float, float, float], fall: Footfall, bulge: Bulge, context: Context) -> Sidestep:
+    """Return the move of a foot that steps aside, low. way : its lift and its landing, seconds, and its metres"""
+    lift, land, far = way
+    step, home = context.settings.step, context.settings.home
+    heel = heel_of_step(step)
+    lift_up, most, land_up = (home.heel * pitch for pitch in heel.degrees)
+    heel = replace(heel, degrees=(lift_up, most, land_up))
+    height = home.height * step_height(far, land, context)
+    return Sidestep(lift, land, pair(fall.ball), fall.yaw, heel_up(step, 0.0, heel, [0]), height, bulge)
 
 
 def _between(places: Array) -> Array:

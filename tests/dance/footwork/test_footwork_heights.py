@@ -1,0 +1,69 @@
+"""How high feet rise: lower where they go less far, no two steps alike, and low where no note is stepped on."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from bake_mirror import mirrored_play
+from bake_plays import Event, L, R, chart, context, pad, plan_of, play
+
+from dancetutor_cli.dance.bake import bake
+from dancetutor_cli.dance.footwork.foothold import step_height
+from dancetutor_cli.dance.motion import sample
+from dancetutor_cli.dance.plan import Plan, Sidestep, Step
+from dancetutor_cli.dance.rig.body import world_transforms
+from dancetutor_cli.dance.settings import default_settings
+
+SINGLE = np.array([3, 1, 2, 0])  # of each column its mirror image
+SLOW: list[Event] = [(2.0 + 0.8 * k, {(0, 3, 1, 2, 0, 3)[k % 6]: (L, R)[k % 2]}) for k in range(18)]
+WAIT: list[Event] = [(3.0, {0: L}), (3.5, {3: R}), (4.0, {1: L}), (4.5, {2: R}), (8.5, {0: L}), (9.0, {3: R})]
+
+
+def heights(plan: Plan, kind: type[Step] | type[Sidestep]) -> np.ndarray:
+    """Metres, in order of time."""
+    found = [(move.land, move.height) for track in plan.feet for move in track.moves if isinstance(move, kind)]
+    return np.array([height for _, height in sorted(found)])
+
+
+def ankles(events: list[Event], kind: type[Step] | type[Sidestep]) -> np.ndarray:
+    """How far the ankle rises in each such move of a bake, centimetres."""
+    plan, motion = (make(chart().timing, play(events), pad()) for make in (plan_of, bake))
+    rises = []
+    for side, track in zip("lr", plan.feet, strict=True):
+        for move in (move for move in track.moves if isinstance(move, kind)):
+            at = np.linspace(move.lift, move.land + 0.15, 60)
+            places, _ = world_transforms(motion.skeleton, *sample(motion, at))
+            height = places[:, motion.skeleton.index(f"{side}_talocrural"), 1]
+            rises.append(100.0 * (height.max() - height[-1]))
+    return np.array(rises)
+
+
+def test_steps_at_leisure_rise_by_four_to_ten_centimetres_and_no_two_alike() -> None:
+    rises = ankles(SLOW, Step)
+    assert len(rises) > 15 and rises.min() > 4.0 and rises.max() < 10.0
+    assert np.ptp(rises) > 1.5 and len(np.unique(np.round(rises, 2))) > len(rises) - 3
+
+
+def test_steps_home_are_lower_than_those_to_notes() -> None:
+    rises = ankles(WAIT, Sidestep)
+    assert len(rises) >= 2 and rises.min() > 2.0 and rises.max() < 5.0
+
+
+def test_a_foot_that_goes_farther_rises_more() -> None:
+    even = default_settings()
+    even = replace(even, step=replace(even.step, height_varies=0.0))
+    near, far, farther = (step_height(way, 3.0, replace(context(), settings=even)) for way in (0.0, 0.4, 2.0))
+    assert near < 0.7 * far < far <= farther == pytest.approx(even.step.height_slow)
+
+
+def test_the_heights_of_a_mirrored_play_are_the_same() -> None:
+    one, image = (plan_of(chart().timing, p, pad()) for p in (play(SLOW), mirrored_play(play(SLOW), SINGLE)))
+    np.testing.assert_allclose(heights(one, Step), heights(image, Step), atol=1e-12)
+    assert np.ptp(heights(one, Step)) > 0.01
+
+
+def test_two_partners_do_not_rise_alike() -> None:
+    both = [step_height(0.4, 3.0, replace(context(), person=person)) for person in (0, 1)]
+    assert both[0] != both[1]
