@@ -169,10 +169,11 @@ def holding(settings: MotionSettings) -> MotionSettings:
     body = replace(body, leg=body.leg - bar.knees, soft_reach=body.soft_reach - bar.knees)
     body = replace(body, stream_crouch=bar.stream_crouch)
     jump = replace(jump, crouch=jump.crouch / 2, follow=jump.follow / 2)
-    look, groove = replace(look, torso_weight=bar.square), replace(settings.groove, hands=bar.free_hand)
+    groove = replace(settings.groove, hands=bar.free_hand, hands_easy=bar.free_hand)
+    look, wait = replace(look, torso_weight=bar.square), replace(settings.wait, arms=bar.free_hand)
     carried = settings.arms.carried_bent / 3, settings.arms.carried_upper / 3  # not far from the rail
-    arms = replace(settings.arms, carried_bent=carried[0], carried_upper=carried[1])
-    return replace(settings, body=body, jump=jump, look=look, groove=groove, arms=arms)
+    arms = replace(settings.arms, carried_bent=carried[0], carried_upper=carried[1], bent_easy=settings.arms.bent)
+    return replace(settings, body=body, jump=jump, look=look, groove=groove, arms=arms, wait=wait)
 
 
 def on_rail(x: Array, bar: Bar, from_end: float) -> Array:

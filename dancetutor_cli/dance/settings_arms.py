@@ -36,10 +36,12 @@ class ArmSettings:
     out: Metres
     upper_back: Degrees
     bent: Degrees
+    bent_easy: Degrees
     down: Metres
     stream_bent: Degrees
     stream_back: Degrees
     forearm_most: Degrees
+    forearm_easy: Degrees
     stream_out: Metres
     stream_wander: Metres
     stream_pump: Metres
@@ -51,6 +53,7 @@ class ArmSettings:
     carried_bent: Degrees
     carried_upper: Degrees
     carried_out: Metres
+    carried_easy: Ratio
     raised: Ratio
     raised_most: Metres
     cancel: Ratio
@@ -94,6 +97,7 @@ class ArmSettings:
     swing_most: Metres
     swing_upper: Degrees
     swing_bent: Degrees
+    back_most: Degrees
     bent_least: Degrees
     bent_most: Degrees
     elbow_out: Ratio

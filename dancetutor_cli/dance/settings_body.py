@@ -211,6 +211,9 @@ class GrooveSettings:
     nod: Degrees
     shrug: Degrees
     hands: Metres
+    hands_easy: Metres
+    hands_from: Seconds
+    hands_full: Seconds
     deeper: Ratio
     bob: Metres
     leisure: Ratio
@@ -256,6 +259,7 @@ class WaitSettings:
     shift_time: Seconds
     stays: Ratio
     lean: Degrees
+    arms: Metres
     turn: Degrees
     turn_time: Seconds
     held_from: Ratio

@@ -29,6 +29,7 @@ class WaitMotion:
     share : (n,) 0 to 1, how much the dancer waits; shift : (n,) metres that her hips must be on the left of the middle
     between the feet
     turn : (n,) radians that her chest is turned to the left
+    swing : (n, 2) metres ahead that the left and the right hand swing beside the hips
     hands : (n, 2, 3) metres by which the left and the right hand move, in the chest's upright axes
     flap : (n, 2) radians that hands are bent at the wrist; loose : (n, 2) 0 to 1, how much fingers hang
     shrug : (n, 2) radians that shoulders are raised
@@ -38,6 +39,7 @@ class WaitMotion:
     share: Array
     shift: Array
     turn: Array
+    swing: Array
     hands: Array
     flap: Array
     loose: Array
@@ -49,7 +51,7 @@ class WaitMotion:
     def none(cls, count: int) -> WaitMotion:
         """Return no movements, for `count` times."""
         one, two = partial(np.zeros, count), partial(np.zeros, (count, 2))
-        return cls(one(), one(), one(), np.zeros((count, 2, 3)), two(), two(), two(), one(), two())
+        return cls(one(), one(), one(), two(), np.zeros((count, 2, 3)), two(), two(), two(), one(), two())
 
 
 def waiting_at(plan: Plan, times: Array, context: Context) -> WaitMotion:
@@ -65,6 +67,7 @@ def waiting_at(plan: Plan, times: Array, context: Context) -> WaitMotion:
         return out
     first, last = float(times[busy[0]]), float(times[busy[-1]])
     out.shift[:] = plan.hand * out.share * _shift(times, context)
+    out.swing[:] = numbers.arms * np.outer(out.shift / max(numbers.shift, 1e-6), (-1.0, 1.0))
     song = song_of(plan, context)
     slow = [slowly(song, times, numbers.turn_time, salt) for salt in range(3)]
     out.turn[:] = plan.hand * out.share * np.radians(numbers.turn) * slow[0]

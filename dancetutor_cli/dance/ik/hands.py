@@ -333,21 +333,47 @@ def _off_the_thigh(points: Array, hip: Array, thigh: Array, room: float) -> Arra
 # Where a hand is whose arm hangs and swings.
 
 
-def bent_arms(swing: Array, bent: Array, upper: Array | float, out: Array, context: Context) -> Array:
+LEVEL = 90.0  # degrees by which a forearm may swing up farther where time is short
+LEVEL_SOFT = 4.0  # degrees over which a forearm comes to its highest
+SWINGS_SOFT = np.radians(6.0)  # over which an arm that swings comes to its highest, or farthest back
+
+
+def bent_arms(
+    swing: Array, bent: Array, upper: Array | float, out: Array, context: Context, highest: Array | float = np.inf
+) -> Array:
     """Return where hands are from their shoulders, (n, 2, 3): an elbow bends as its arm swings forward, and opens as
     the arm goes back, so that no elbow is far behind the trunk.
 
     swing : (n, 2) metres ahead; bent, upper : the elbow's flexion, and the upper arm's angle ahead of hanging down, of
-    an arm that does not swing, radians; out : (n, 2) metres to the left
+    an arm that does not swing, radians; out : (n, 2) metres to the left; highest : radians that a forearm is up at most
     """
     arms, (u, f) = context.settings.arms, bone_lengths(context.skeleton, "l", ARM)
     least, most = np.radians((arms.bent_least, arms.bent_most))
     flexed = _within(bent + np.radians(arms.swing_bent) * swing, least, most)
     raised = upper + np.radians(arms.swing_upper) * swing
+    raised = raised + soft_excess(-np.radians(arms.back_most) - raised, SWINGS_SOFT)
+    flexed = flexed - soft_excess(flexed + raised - highest, SWINGS_SOFT)
     ahead, down = (u * part(raised) + f * part(raised + flexed) for part in (np.sin, np.cos))
     far2 = ahead**2 + down**2
     in_plane = np.sqrt(np.maximum(1.0 - out**2 / far2, 0.04))  # the rest of the arm's length is aside
     return np.stack((out, -down * in_plane, ahead * in_plane), axis=2)
+
+
+def hanging_arms(
+    carried: Array, effort: tuple[Array, Array, Array], swing: tuple[Array, Array], context: Context
+) -> Array:
+    """Return where hands are from their shoulders, (n, 2, 3); a forearm that is carried up stays below level.
+
+    carried : (n, 2), -1 to 1; effort : of streams, 0 to 1, how unlike both hands are, how much time there is, 0 to 1
+    swing : see `bent_arms`
+    """
+    arms, (streams, unlike, easy) = context.settings.arms, effort
+    bent = (arms.bent + easy * (arms.bent_easy - arms.bent) + arms.stream_bent * streams) * unlike
+    bent = bent + arms.carried_bent * carried
+    upper = arms.carried_upper * carried - arms.upper_back - arms.stream_back * streams
+    bent = bent - soft_excess(bent + upper - arms.forearm_most, LEVEL_SOFT)
+    highest = np.radians(arms.forearm_easy + (1.0 - easy) * LEVEL)
+    return bent_arms(swing[0], np.radians(bent), np.radians(upper), swing[1], context, highest)
 
 
 def _within(x: Array, least: float, most: float) -> Array:

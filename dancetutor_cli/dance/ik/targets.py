@@ -15,7 +15,7 @@ from dancetutor_cli.dance.ik.hands import (
     HandTargets,
     Hips,
     Torso,
-    bent_arms,
+    hanging_arms,
     hip_clearance,
     lead_hands_to_bar,
     leg_clearance,
@@ -38,6 +38,7 @@ from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_arms import ArmSettings
 from dancetutor_cli.dance.smoothing import Controller, follow, sample_path, smooth, smooth_path, soft_excess
 from dancetutor_cli.dance.trajectory.facing import crossing_share
+from dancetutor_cli.dance.trajectory.groove import leisure
 from dancetutor_cli.dance.trajectory.height import jump_swing, tempo_factor
 from dancetutor_cli.dance.trajectory.legs import ankle_of
 from dancetutor_cli.dance.trajectory.posture import Trajectory
@@ -48,13 +49,15 @@ FINGERS = np.radians(np.arange(-165.0, 180.0, 15.0))  # directions of fingers to
 POLES = np.array([[1.0, 0.0, -0.3], [0.7, -0.25, -0.75], [0.3, -0.5, -1.0], [0.5, 0.5, -0.8]])  # of elbows, left chest
 EASE, EASY = 15.0, 40.0  # degrees within its limits at which a joint is at ease; how much turned fingers count
 WAVES = 1.3  # about the size of the sum of both waves
-LEVEL = np.array([0.6, 0.5, 0.0])  # hands wander less up and down, for their height shows effort, and less aside
+DRIFT = np.array([0.6, 0.5, 0.0])  # hands wander less up and down, for their height shows effort, and less aside
 ASKEW = np.array([[0.3, -0.6, -0.8], [0.4, 0.6, 0.8]])  # one hand is a little lower and farther back
 HELD_BACK = 0.25  # share of a stretch in which a hand is too quick, from which on it is held back all through
 ASIDE_SOFT = 0.02  # metres over which a hand comes to its least distance outward in a lean
 UP_SOFT = 0.06  # metres over which a hand begins to rise as it swings ahead or is raised aside
 BENT_SOFT = 0.006  # metres over which an arm comes to its greatest length
-LEVEL_SOFT = 4.0  # degrees over which a forearm comes to its highest
+LOWER = 0.6  # part by which a hand that is raised aside rises less at leisure
+SWAYS = 1.5, 0.35  # seconds before and after over which she sways, and how far, for hands that swing all the way
+EASED = 0.6  # seconds before and after over which arms begin to be at leisure
 ELBOWS_IN = 0.62  # part of the way by which elbows turn to the body for another dancer; all of it is too much
 GIVEN_WAY = 0.145  # metres that a hand gives way to another dancer with which its elbow turns to the body
 SPUN = 0.5  # seconds before and after over which a spin is looked for
@@ -165,23 +168,30 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> FreeHands:
         wander, askew = (ways[..., ::-1, :] * [-1.0, 1.0, 1.0] for ways in (wander, askew))
     # the two hands are never equally high and never swing equally far
     unlike = 1.0 + arms.unlike * (wander + askew)[..., 1] / ASKEWED
-    sway = context.settings.groove.hands * body.sway[:, None]
+    groove = settings.groove
+    easy = leisure(plan, body.times, replace(groove, leisure_from=groove.hands_from, leisure_full=groove.hands_full))
+    waiting = waiting_at(plan, body.times, context)
+    swaying = np.minimum(moving_mean(np.abs(body.sway), rate, SWAYS[0]) / SWAYS[1] + waiting.share, 1.0)
+    easy = moving_mean(easy * swaying, rate, EASED)[:, None]
+    sway = (groove.hands + easy * (groove.hands_easy - groove.hands)) * body.sway[:, None]
     pump = arms.stream_pump * effort * body.arms[:, 2:3]  # in streams arms pump in turn
     swing = unlike * _swing(plan, body, settings) + (sway + pump) * [-1.0, 1.0]  # with the shoulder that turns forward
     swing += (arms.wander + arms.stream_wander * effort) * wander[..., 2] + arms.askew * askew[..., 2]
-    carried = body.arms[:, 3:]  # forearms are up in one phrase of the music, and hang in another
+    swing += waiting.swing
+    # forearms are up in one phrase of the music, and hang in another, less far where hands swing
+    carried = body.arms[:, 3:] * (1.0 + easy * (arms.carried_easy - 1.0))
     out = np.array([1.0, -1.0]) * (arms.out + arms.stream_out * effort + arms.carried_out * _upward(carried))
-    eased = (effort, unlike), (swing, out)
-    hang = _hanging(carried, *eased, context)
-    way = hang - _hanging(np.zeros_like(carried), *eased, context)
+    eased = (effort, unlike, easy), (swing, out)
+    hang = hanging_arms(carried, *eased, context)
+    way = hang - hanging_arms(np.zeros_like(carried), *eased, context)
     raised = _upward(np.outer(body.arms[:, 1], (1.0, -1.0)))
     hang[..., 0] += raised * [1.0, -1.0]
-    hang[..., 1] += 0.5 * raised
+    hang[..., 1] += 0.5 * (1.0 - LOWER * easy) * raised
     jump = (jump_swing(plan, body.times, settings.jump) * (1.0 - body.reaching.max(axis=1)))[:, None]
     hang[..., 1] += 0.5 * arms.jump_up * (jump + jump**2)
     hang[..., 2] += arms.jump * jump
-    hang += ((arms.wander + arms.stream_wander * effort)[..., None] * wander + arms.askew * askew) * LEVEL
-    hang += waiting_at(plan, body.times, context).hands
+    hang += ((arms.wander + arms.stream_wander * effort)[..., None] * wander + arms.askew * askew) * DRIFT
+    hang += waiting.hands
     share = crossing_share(plan.grips, body.times, settings.across)
     for side, sign in ((0, 1.0), (1, -1.0)):  # the near hand is behind her, out of the other one's way
         behind = np.array([sign * settings.across.free_out, -arms.down, -settings.across.free_back])
@@ -207,18 +217,6 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> FreeHands:
 def _upward(x: Array) -> Array:
     """Return max(x, 0), rounded off over about `UP_SOFT` metres around 0, and 0 at 0."""
     return np.asarray((x + np.sqrt(x**2 + UP_SOFT**2) - UP_SOFT) / 2.0)
-
-
-def _hanging(carried: Array, effort: tuple[Array, Array], swing: tuple[Array, Array], context: Context) -> Array:
-    """Return where hands are from their shoulders, (n, 2, 3); a forearm that is carried up stays below level.
-
-    carried : (n, 2), -1 to 1; effort : of streams, 0 to 1, and how unlike both hands are; swing : see `bent_arms`
-    """
-    arms, (streams, unlike) = context.settings.arms, effort
-    bent = (arms.bent + arms.stream_bent * streams) * unlike + arms.carried_bent * carried
-    upper = arms.carried_upper * carried - arms.upper_back - arms.stream_back * streams
-    bent = bent - soft_excess(bent + upper - arms.forearm_most, LEVEL_SOFT)
-    return bent_arms(swing[0], np.radians(bent), np.radians(upper), swing[1], context)
 
 
 def _at_most(way: Array, most: float) -> Array:
