@@ -260,6 +260,13 @@ class WaitSettings:
     stays: Ratio
     lean: Degrees
     arms: Metres
+    hips: Degrees
+    chest: Degrees
+    foot_from: Degrees
+    foot_to: Degrees
+    foot_after: Seconds
+    foot_time: Seconds
+    foot_stands: Seconds
     turn: Degrees
     turn_time: Seconds
     held_from: Ratio

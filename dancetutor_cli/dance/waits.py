@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dancetutor_cli.dance.context import Context
-from dancetutor_cli.dance.plan import Plan, chance_of
+from dancetutor_cli.dance.plan import Pivot, Plan, chance_of
 from dancetutor_cli.dance.settings_body import WaitSettings
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array
@@ -28,7 +28,7 @@ class WaitMotion:
 
     share : (n,) 0 to 1, how much the dancer waits; shift : (n,) metres that her hips must be on the left of the middle
     between the feet
-    turn : (n,) radians that her chest is turned to the left
+    turn : (n,) radians that her chest is turned to the left; hips : (n,) the same of her pelvis, with her chest
     swing : (n, 2) metres ahead that the left and the right hand swing beside the hips
     hands : (n, 2, 3) metres by which the left and the right hand move, in the chest's upright axes
     flap : (n, 2) radians that hands are bent at the wrist; loose : (n, 2) 0 to 1, how much fingers hang
@@ -39,6 +39,7 @@ class WaitMotion:
     share: Array
     shift: Array
     turn: Array
+    hips: Array
     swing: Array
     hands: Array
     flap: Array
@@ -51,7 +52,7 @@ class WaitMotion:
     def none(cls, count: int) -> WaitMotion:
         """Return no movements, for `count` times."""
         one, two = partial(np.zeros, count), partial(np.zeros, (count, 2))
-        return cls(one(), one(), one(), two(), np.zeros((count, 2, 3)), two(), two(), two(), one(), two())
+        return cls(one(), one(), one(), one(), two(), np.zeros((count, 2, 3)), two(), two(), two(), one(), two())
 
 
 def waiting_at(plan: Plan, times: Array, context: Context) -> WaitMotion:
@@ -67,10 +68,11 @@ def waiting_at(plan: Plan, times: Array, context: Context) -> WaitMotion:
         return out
     first, last = float(times[busy[0]]), float(times[busy[-1]])
     out.shift[:] = plan.hand * out.share * _shift(times, context)
-    out.swing[:] = numbers.arms * np.outer(out.shift / max(numbers.shift, 1e-6), (-1.0, 1.0))
+    over = out.shift / max(numbers.shift, 1e-6)
+    out.swing[:], out.hips[:] = numbers.arms * np.outer(over, (-1.0, 1.0)), np.radians(numbers.hips) * over
     song = song_of(plan, context)
     slow = [slowly(song, times, numbers.turn_time, salt) for salt in range(3)]
-    out.turn[:] = plan.hand * out.share * np.radians(numbers.turn) * slow[0]
+    out.turn[:] = plan.hand * out.share * np.radians(numbers.turn) * slow[0] + np.radians(numbers.chest) * over
     for hand in (0, 1):  # now and then one hand is held in front of the body for a while
         up = out.share * smooth((slow[1 + (hand ^ plan.lead)] - numbers.held_from) / (1.0 - numbers.held_from))
         out.hands[:, hand] += up[:, None] * [0.0, numbers.held_up, numbers.held_ahead]
@@ -122,7 +124,7 @@ def _draw(song: Song, number: int) -> _Draw:
 def _waits(plan: Plan, context: Context) -> Iterator[tuple[float, float]]:
     """Return first and last second of each stand that is long enough, without its ends."""
     numbers, down = context.settings.wait, context.settings.hands.reach_down
-    busy = [(move.lift, move.land) for track in plan.feet for move in track.moves]
+    busy = [(move.lift, move.land) for track in plan.feet for move in track.moves if not isinstance(move, Pivot)]
     busy += [(press.start - press.lead, press.end + down) for press in plan.presses]
     busy += [(walk.start, walk.end) for walk in plan.walks]
     free = -np.inf

@@ -275,17 +275,21 @@ class Footing:
         limit = np.radians(self.settings.step.foot_turn)
         return float(np.clip(yaw, body - limit, body + limit))
 
-    def pivot_yaw(self, foot: FootState, body: float, other: Array, other_toes: float) -> float:
+    def pivot_yaw(
+        self, foot: FootState, body: float, other: Array, other_toes: float, limits: tuple[float, float] | None = None
+    ) -> float:
         """Return the yaw of a standing foot after it has followed the body's yaw, as far as the other shoe leaves room.
 
         The foot does not turn over a panel with a mine, nor for only a few degrees.
 
-        other, other_toes : ball and toes of the other foot after its step
+        other, other_toes : ball and toes of the other foot after its step; limits : degrees from the body from which
+        on it turns, and with which it ends; None: those of a step
         """
         step = self.settings.step
-        if abs(foot.yaw - body) <= np.radians(step.pivot_from):
+        least, most = np.radians(limits or (step.pivot_from, step.pivot_to))
+        if abs(foot.yaw - body) <= least:
             return foot.yaw
-        wanted = float(np.clip(foot.yaw, body - np.radians(step.pivot_to), body + np.radians(step.pivot_to)))
+        wanted = float(np.clip(foot.yaw, body - most, body + most))
         yaws = foot.yaw + np.linspace(1.0, 0.0, 9) * (wanted - foot.yaw)
         balls, toes = np.tile(foot.ball, (9, 1)), yaws + foot.outward * self.toe_out
         gaps = gaps_at(balls, toes, other, other_toes)

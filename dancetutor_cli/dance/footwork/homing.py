@@ -191,6 +191,28 @@ def faces_as_at_home(row: Row, footing: Footing) -> bool:
     return bool(foot.outward * across >= 0.0)
 
 
+# A foot that points far from the body since a step, in a long stand in which a panel is held, turns on its ball.
+
+
+def ease_feet(row: Row, footing: Footing, whole: tuple[bool, bool]) -> Proposal | None:
+    """Propose that feet turn on their balls to the body while one of them holds a panel, in a stand before a row; None:
+    she does not stand so for long, or no foot has to. whole : whether each foot stands on a panel with its whole sole
+    """
+    wait = footing.settings.wait
+    landed = max(foot.landed for foot in footing.feet)
+    start, end = landed + wait.foot_after, landed + wait.foot_after + wait.foot_time
+    if row.time - landed < wait.after or max(foot.free for foot in footing.feet) < end + wait.foot_stands:
+        return None
+    turned = footing
+    for foot in footing.feet:
+        if whole[foot.side]:
+            other = turned.other(foot)
+            limits = wait.foot_from, wait.foot_to
+            yaw = turned.pivot_yaw(foot, footing.faced, other.ball, turned.toes(other), limits)
+            turned = turned.pivoted(foot, yaw, start, end)
+    return None if turned is footing else Proposal(turned)
+
+
 # Legs shaken out in waits: for a moment, a foot hangs loosely in the air behind the dancer, with the weight on the
 # other leg. In front of her, it would look like a step.
 

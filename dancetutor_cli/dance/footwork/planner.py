@@ -14,7 +14,7 @@ from dancetutor_cli.dance.context import Context, bar_of, context_of, holding
 from dancetutor_cli.dance.foot_path import shoe_path
 from dancetutor_cli.dance.footwork.footfalls import Stand, current_stand
 from dancetutor_cli.dance.footwork.footing import SHORTEST_SWING, Footing, Proposal, Row, hold, pair, press, pressed_by
-from dancetutor_cli.dance.footwork.homing import HomeSteps, faces_as_at_home, leg_shakes
+from dancetutor_cli.dance.footwork.homing import HomeSteps, ease_feet, faces_as_at_home, leg_shakes
 from dancetutor_cli.dance.footwork.mines import avoid_mines
 from dancetutor_cli.dance.footwork.steps import jump, step
 from dancetutor_cli.dance.footwork.turning import Facing, leading_foot, turn_start
@@ -33,7 +33,7 @@ from dancetutor_cli.dance.plan import STRAIGHT, Bulge, FootTrack, Jump, Move, Pl
 from dancetutor_cli.dance.settings import MotionSettings, SettingsCourse, default_settings
 from dancetutor_cli.dance.settings_feet import WalkSettings
 from dancetutor_cli.dance.units import Array
-from dancetutor_cli.feet.limbs import Limb
+from dancetutor_cli.feet.limbs import Limb, Part
 from dancetutor_cli.feet.play import Play, StepKind
 from dancetutor_cli.feet.unplayable import DroppedNote, without_unplayable
 from dancetutor_cli.run.errors import DancetutorError
@@ -44,6 +44,7 @@ if TYPE_CHECKING:
 
 # From a play to moves, row by row. The planner calls the rules for proposals, and only the planner applies them.
 
+MOST_COLUMNS = 16  # newest touches among which the last one of each foot is looked for
 NEWEST = 8  # moves of a foot that rules may still read or change
 
 
@@ -107,6 +108,9 @@ class Planner:
         time, longest = row.time, self.settings.step.longest
         aside = None
         if self.previous is not None:
+            eases = ease_feet(row, self.footing, self._whole())
+            if eases is not None:
+                self._apply(eases)
             asked = row, self.presses, self.footing
             aside = self.asides.before(*asked) or self.homes.before(*asked)
         if aside is not None:
@@ -128,6 +132,11 @@ class Planner:
         turn = Turn(turn_start((time, duration), found.leaves, float(np.degrees(far)), self.settings.step), time, yaw)
         self._apply(replace(found, footing=replace(found.footing, faced=yaw), turn=turn))
         self.previous = time
+
+    def _whole(self) -> tuple[bool, bool]:
+        """Whether each foot has its whole sole on the panel that it stepped on last."""
+        parts = {touch.limb: touch.part for touch in self.touches[-MOST_COLUMNS:]}
+        return parts.get(Limb.LEFT_FOOT) == Part.WHOLE, parts.get(Limb.RIGHT_FOOT) == Part.WHOLE
 
     def _touch(self, row: Row, limb: int, column: int) -> None:
         """Add the contact of a limb with a column."""

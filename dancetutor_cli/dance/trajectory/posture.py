@@ -274,7 +274,7 @@ def _course(
 ) -> tuple[Course, tuple[str, ...]]:
     """Return where the body goes over the ground, and which limits had to be softened."""
     settings, times, baked = context.settings, now.times, rough.trajectory
-    yaw = pelvis_yaw(plan, times, settings)
+    yaw = pelvis_yaw(plan, times, settings) + now.waiting.hips
     if baked is not None and rough.keep:
         softened = tuple(what for what in baked.softened if what == BALANCE)
         return Course(times, baked.mass, rough.above, rough.hips, yaw), softened
