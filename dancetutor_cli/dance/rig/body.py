@@ -268,6 +268,11 @@ def leg_masses(skeleton: Skeleton) -> tuple[tuple[float, float], ...]:
     )
 
 
+def leg_length(skeleton: Skeleton) -> float:
+    """Return the length of thigh and shank together, metres."""
+    return float(sum(np.linalg.norm(skeleton.offsets[skeleton.index(f"l_{n}")]) for n in ("knee", "talocrural")))
+
+
 @lru_cache(maxsize=1)
 def dancer_foot() -> tuple[float, float]:
     """Return `heel_to_ball` and `ball_height` of the project's own dancer."""

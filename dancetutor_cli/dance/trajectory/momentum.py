@@ -21,7 +21,7 @@ import numpy as np
 from dancetutor_cli.dance.foot_path import Feet
 from dancetutor_cli.dance.quadratic import BandedLeastSquares, differences
 from dancetutor_cli.dance.rig import quaternion as quat
-from dancetutor_cli.dance.rig.body import CHEST_INERTIA, GRAVITY, PELVIS_INERTIA, leg_masses, mass_points
+from dancetutor_cli.dance.rig.body import CHEST_INERTIA, GRAVITY, PELVIS_INERTIA, leg_length, leg_masses, mass_points
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.settings_arms import ArmSettings
 from dancetutor_cli.dance.smoothing import low_pass
@@ -90,21 +90,34 @@ def lower_momentum(feet: Feet, course: Course, height: Array, skeleton: Skeleton
     """Return the momentum (n, 3) about the centre of mass of both legs and the part they carry, m^2/s per mass of the
     body.
 
-    The legs are straight lines from the hips of an upright body. The middle of the carried part is where the given
-    centre of mass requires it.
+    The legs go from the hips of an upright body; their knees, in the middle, bend to where the pelvis faces. The middle
+    of the carried part is where the given centre of mass requires it.
     """
     mass = np.column_stack((course.mass[:, 0], height, course.mass[:, 1]))
     root = mass - above_at_rest(skeleton)
     hips = root[:, None] + upright_hips(course.yaw, skeleton)
+    ahead = np.column_stack((np.sin(course.yaw), np.zeros(len(mass)), np.cos(course.yaw)))
     out, carried, upper = np.zeros_like(mass), np.zeros_like(mass), 1.0
     for side, foot in enumerate(feet):
         ankle = ankle_of(foot, skeleton, side)
+        leg = ankle - hips[:, side]
+        bulge = knee_bulge(leg, ahead, leg_length(skeleton))
         for along, share in leg_masses(skeleton):
-            off = hips[:, side] + along * (ankle - hips[:, side]) - mass
+            off = hips[:, side] + along * leg + 2.0 * min(along, 1.0 - along) * bulge - mass
             out += share * np.cross(off, np.gradient(off, axis=0)) * course.rate
             carried -= share * off
             upper -= share
     return np.asarray(out + np.cross(carried, np.gradient(carried, axis=0)) * course.rate / upper)
+
+
+def knee_bulge(leg: Array, ahead: Array, length: float) -> Array:
+    """Return how far (n, 3) a knee is from the middle between hip and ankle, `leg` (n, 3) apart; it bends `ahead`
+    (n, 3). Thigh and shank are `length` long together, half each.
+    """
+    apart = np.maximum(np.linalg.norm(leg, axis=1, keepdims=True), 1e-6)
+    across = ahead - np.sum(ahead * leg, axis=1, keepdims=True) * leg / apart**2
+    across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-6)
+    return np.asarray(np.sqrt(np.maximum(length**2 - apart**2, 0.0)) / 2.0 * across)
 
 
 # The offset of the zero-moment point by limbs that swing about the centre of mass.
