@@ -23,8 +23,9 @@ from dancetutor_cli.dance.pieces import BakedPiece, Piece, PieceRunner, RagdollS
 from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.rig.body import mass_of
 from dancetutor_cli.dance.settings import Span, state_weights
-from dancetutor_cli.dance.settle import heels_may_rise, settle, targets_at
+from dancetutor_cli.dance.settle import settle, targets_at
 from dancetutor_cli.dance.smoothing import sample_path
+from dancetutor_cli.dance.trajectory.legs import heels_may_rise
 from dancetutor_cli.dance.trajectory.posture import Trajectory, lift_side
 from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.dance.waits import waiting_at

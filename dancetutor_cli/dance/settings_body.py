@@ -216,6 +216,7 @@ class GrooveSettings:
     hands_full: Seconds
     deeper: Ratio
     bob: Metres
+    heels: Degrees
     leisure: Ratio
     leisure_from: Seconds
     leisure_full: Seconds
@@ -224,6 +225,7 @@ class GrooveSettings:
     phrase: Seconds
     phrase_ease: Duration
     phrase_stays: Ratio
+    bow: Degrees
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,13 +22,12 @@ from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import SIDES, centre_of_mass, world_transforms
 from dancetutor_cli.dance.rig.skeleton import Skeleton
-from dancetutor_cli.dance.smoothing import cubic, sample_path, smooth, smooth_path, upper_envelope
-from dancetutor_cli.dance.trajectory.legs import push_off, raised
+from dancetutor_cli.dance.smoothing import cubic, sample_path, smooth_path, upper_envelope
+from dancetutor_cli.dance.trajectory.legs import heels_may_rise, push_off, raised
 from dancetutor_cli.dance.trajectory.momentum import rotation_zmp_offset
 from dancetutor_cli.dance.trajectory.posture import RoughBake, Trajectory, bake_at_rest, body_trajectory
 from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.dance.waits import waiting_at
-from dancetutor_cli.feet.limbs import Limb, Part
 
 SETTLE_ROUNDS, ROUNDS_WITH_PALMS = 2, 3  # rounds of rough baking until the path of the body is final
 TIGHTENED = 3  # rounds of tightening the limits of balance in the last of these rounds
@@ -87,7 +86,8 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> SettledTra
             rough = replace(rough, tightened=TIGHTENED)
         elif number > 0:  # a round in between is for palms: it changes the height, and not the path over the ground
             rough = replace(rough, keep=True)
-        body = replace(body_trajectory(plan, times, feet, context, rough), heels=heels + push, knees=knees)
+        body = body_trajectory(plan, times, feet, context, rough)
+        body = replace(body, heels=heels + np.maximum(push, body.heels), knees=knees)
     return SettledTrajectory(body, tuple(residuals))
 
 
@@ -138,15 +138,3 @@ def _heels_up(rotations: Array, context: Context) -> tuple[Array, Array]:
         q = np.where(q[:, :1] < 0, -q, q)
         out.append(np.clip(-2.0 * np.arctan2(q[:, 1], q[:, 0]) - limit, 0.0, most))
     return out[0], out[1]
-
-
-def heels_may_rise(plan: Plan, times: Array, down: float) -> Array:
-    """Return how much (n, 2) each heel may rise for the ankle, 0 to 1; 0 while the heel presses a panel.
-
-    down : seconds in which the heel comes down before a press
-    """
-    out = np.ones((len(times), 2))
-    for contact in (c for c in plan.contacts if c.limb < Limb.LEFT_HAND and c.part == Part.HEEL):
-        away = np.maximum(contact.start - times, times - contact.end)
-        out[:, contact.limb] = np.minimum(out[:, contact.limb], smooth(away / down))
-    return out

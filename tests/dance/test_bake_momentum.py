@@ -15,6 +15,8 @@ from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import mass_points, world_transforms
 from dancetutor_cli.dance.settings import default_settings
+from dancetutor_cli.dance.trajectory import momentum as momentum_of_legs
+from dancetutor_cli.dance.trajectory import posture
 
 RATE = 120.0
 
@@ -67,3 +69,48 @@ def test_the_trunk_answers_quick_legs_at_once() -> None:
     dance = play([(1.0 + 0.16 * k, {(0, 1, 3, 2, 0, 2, 3, 1)[k % 8]: (L, R)[k % 2]}) for k in range(48)])
     measured = report(bake(chart().timing, dance, pad()))
     assert measured["residual moment, 99th percentile"].value < 0.26
+
+
+def test_the_trunk_answers_knees_that_fold_in_jumps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In flight nothing else can: thighs and shanks on a straight line would have another momentum."""
+    dance = play([(2.0 + 0.45 * k, {(0, 1)[k % 2]: L, (2, 3)[k % 2]: R}) for k in range(16)])
+    with_it = report(bake(chart().timing, dance, pad()))
+    monkeypatch.setattr(momentum_of_legs, "knee_bulge", lambda leg, *rest: np.zeros_like(leg))
+    without = report(bake(chart().timing, dance, pad()))
+    name = "residual moment, 99th percentile"
+    assert with_it[name].value < 0.85 * without[name].value
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.2, -0.35])
+def test_a_knee_bends_ahead_by_what_thigh_and_shank_are_longer(aside: float) -> None:
+    leg = np.array([[aside, -0.6, 0.1]])
+    ahead = np.array([[0.0, 0.0, 1.0]])
+    bulge = momentum_of_legs.knee_bulge(leg, ahead, 0.81)
+    assert np.linalg.norm(leg / 2.0 + bulge) == pytest.approx(0.405) == np.linalg.norm(leg / 2.0 - bulge)
+    assert bulge[0, 2] > 0.0 and abs(np.dot(bulge[0], leg[0])) < 1e-12
+    assert abs(np.dot(np.cross(leg[0], ahead[0]), bulge[0])) < 1e-12
+
+
+def test_hips_list_with_the_beat_in_jumps(monkeypatch: pytest.MonkeyPatch) -> None:
+    dance = play([(2.0 + 0.5 * k, {(0, 1)[k % 2]: L, (3, 2)[k % 2]: R}) for k in range(48)])
+    tilts = []
+    for legs in (posture.LEGS, 0.0):
+        monkeypatch.setattr(posture, "LEGS", legs)
+        tilts.append(report(bake(chart().timing, dance, pad()))["tilt of the hips, deviation"].value)
+    assert tilts[0] > tilts[1] + 0.5
+
+
+def test_in_streams_she_goes_up_on_her_balls_between_pulses() -> None:
+    """Ankles bounce, too: heels rise and come down again, so that knees need less for the same bounce."""
+    settings = default_settings()
+    dance = play([(1.0 + 0.25 * k, {(0, 2, 1, 3)[k % 4]: (L, R)[k % 2]}) for k in range(112)])
+    found = []
+    for groove in (settings.groove, replace(settings.groove, heels=0.0)):
+        motion = bake(chart().timing, dance, pad(), settings=replace(settings, groove=groove))
+        measured = report(motion)
+        assert measured["contact error"].is_met and measured["balance"].is_met
+        found.append(
+            (measured["bounce of the pelvis, deviation"].value, measured["roll of the foot at landings, median"])
+        )
+    assert found[0][0] > found[1][0] + 0.1
+    assert found[0][1].value > found[1][1].value

@@ -54,7 +54,7 @@ def test_300_newtons_move_her_and_she_takes_every_note(plain: Motion, undisturbe
 
 def test_a_push_to_her_left_moves_her_to_her_left(plain: Motion, undisturbed: Motion) -> None:
     left, right = (
-        through_ragdoll(plain, NEUTRAL, RagdollOptions(pushes=(Push(WHEN, 300.0, d),))).motion.root - undisturbed.root
+        through_ragdoll(plain, NEUTRAL, RagdollOptions(pushes=(Push(WHEN, 380.0, d),))).motion.root - undisturbed.root
         for d in (90.0, 270.0)
     )
     assert left[:, 0].max() > 0.04 > left[:, 0].min() + 0.03 and right[:, 0].min() < -0.04

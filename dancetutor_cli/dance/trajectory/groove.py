@@ -67,7 +67,9 @@ BEAT = (
 BEATS, STEPS = 0.6, 0.07  # how much hands pump with the beat, and seconds over which they go with a step
 PULSE_SHORTEST = 0.30  # seconds from one pulse of the bob to the next at least
 ON_BEAT = 0.05  # seconds from a beat within which a step is on it
-CENTRE = 0.75  # by this part of half the bob the middle of it is lower than the height without it
+DEEPER = 1.12  # a pulse is lowered by so much more than raised before it, because straight legs end the way up
+LEVEL, LEVEL_FROM, LEVEL_FULL = 0.3, 5.5, 8.0  # streams of so many steps a second have up to this part less of the bob
+CENTRE = 0.57  # by this part of half the bob the middle of it is lower than the height without it
 WITHOUT_STEP = 0.45  # a beat without a step is danced this part as deep as one with a step
 NEAR_JUMPS = 0.5  # seconds before and after a jump in which the bob is smaller
 CALM = 0.4  # share of the sway that stops where the dancer comes to rest
@@ -80,19 +82,26 @@ class Groove:
 
     beat : (n,) 0 to 1, how far the body has given way to the beat; sink : (n,) metres that the knees give
     bob : (n,) metres by which the height is lowered on pulses before smoothing, which leaves `groove.bob` of it
+    heels : (n,) 0 to 1, how much heels take part in that, as in streams; high : (n,) 0 on pulses to 1 between them
     sway : (n,) about -1 to 1, to which side the shoulders lean and turn, positive left
+    weight : (n,) the same for her weight near jumps, where both feet stand: onto which leg it goes on the beat
     pump : (n,) the same for hands in streams, where the shoulders keep still: with the beat and with the steps
     grounded : (n,) 0 near jumps, where both arms go up and down together, to 1
     carried : (n, 2) about -1 to 1, how far ahead and up the left and the right hand are carried, else back
+    bow : (n,) about -1 to 1, how much the trunk leans forward
     """
 
     beat: Array
     sink: Array
     bob: Array
+    heels: Array
+    high: Array
     sway: Array
+    weight: Array
     pump: Array
     grounded: Array
     carried: Array
+    bow: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,20 +136,23 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
     late = np.interp(times - settings.layers.beat_late, times, beat)
     deeper = np.maximum(numbers.deeper * jacks, numbers.leisure * np.maximum(easy, occupation.waits))
     sink = (1.0 + deeper) * settings.layers.bounce * late
-    among = (1.0 - slow / 3.0) * (1.0 - np.clip(occupation.busy + occupation.waits, 0.0, 1.0))
+    among = (1.0 - slow / 2.0) * (1.0 - np.clip(occupation.busy + occupation.waits, 0.0, 1.0))
     among *= _grounded(plan, times, NEAR_JUMPS)
-    bob = among * _bob(plan, context, times, occupation.tempo)
+    bob, high = _bob(plan, context, times, occupation.tempo)
     to_side = sway(plan, times, context)
     free = np.clip(1.0 - share - occupation.busy - occupation.waits, 0.0, 1.0)
     loose = np.clip(1.0 - occupation.busy - occupation.waits, 0.0, 1.0) * _among_steps(plan, times)
     carried = loose[:, None] * carriage(plan, times, context)
     pump = free * grounded * (BEATS * to_side + latest_side(plan, times))
-    return Groove(beat, sink, bob, share * to_side, pump, grounded, carried)
+    weight = (1.0 - grounded) * np.clip(1.0 - occupation.busy - occupation.waits, 0.0, 1.0) * to_side
+    bows = loose * bow(plan, times, context)
+    heels = among * occupation.tempo * (1.0 - jacks)
+    return Groove(beat, sink, among * bob, heels, high, share * to_side, weight, pump, grounded, carried, bows)
 
 
-def _bob(plan: Plan, context: Context, times: Array, tempo: Array) -> Array:
+def _bob(plan: Plan, context: Context, times: Array, tempo: Array) -> tuple[Array, Array]:
     """Return by how much (n,) the height has to be lowered on pulses, metres: on average by `CENTRE` halves of what
-    remains of it.
+    remains of it; and where (n,) between pulses each time is, 0 on one to 1 in the middle.
 
     Smoothing the height leaves 1 / (1 + (2 pi T / every)^6) of a movement that comes and goes with pulses `every`
     seconds apart. T is the time constant of `height.height_path`. So the movement is enlarged by the inverse, and the
@@ -149,23 +161,27 @@ def _bob(plan: Plan, context: Context, times: Array, tempo: Array) -> Array:
     body, late = context.settings.body, context.settings.layers.beat_late
     at = pulses(plan, heard_beats(context.beats, context.settings.layers.beat_shortest), PULSE_SHORTEST)
     if len(at) < 2:
-        return np.zeros(len(times))
+        return np.zeros(len(times)), np.zeros(len(times))
     gaps = np.diff(at)
     lows = at + np.minimum(late, LOWEST * np.append(gaps, np.inf))
     every = np.diff(lows)
-    quick = np.interp((lows[1:] + lows[:-1]) / 2, times, tempo)
+    lands, middles = step_landings(plan), (lows[1:] + lows[:-1]) / 2
+    quick = np.interp(middles, times, tempo)
     constant = body.height_calm + (body.height_smooth - body.height_calm) * quick
     lost = np.minimum((2.0 * np.pi * constant / every) ** 6, MOST_LOST)
+    pace = np.searchsorted(lands, middles + 0.5) - np.searchsorted(lands, middles - 0.5)  # steps a second
     far = context.settings.groove.bob * np.minimum(every / BEAT, 1.0) / 2.0
-    low, high = far * (CENTRE + 1.0 + lost), far * (CENTRE - 1.0 - lost)
+    far *= 1.0 - LEVEL * smooth((pace - LEVEL_FROM) / (LEVEL_FULL - LEVEL_FROM))
+    low, high = far * (CENTRE + DEEPER * (1.0 + lost)), far * (CENTRE - 1.0 - lost)
     low = (np.append(low[:1], low) + np.append(low, low[-1:])) / 2.0
-    low *= np.where(distances(at, step_landings(plan)) < ON_BEAT, 1.0, WITHOUT_STEP)
+    low *= np.where(distances(at, lands) < ON_BEAT, 1.0, WITHOUT_STEP)
     knots, values = np.empty(2 * len(lows) - 1), np.empty(2 * len(lows) - 1)
     knots[::2], knots[1::2] = lows, (lows[1:] + lows[:-1]) / 2
     values[::2], values[1::2] = low, high
     k = np.clip(np.searchsorted(knots, times, side="right") - 1, 0, len(knots) - 2)
     share = (1.0 - np.cos(np.pi * np.clip((times - knots[k]) / (knots[k + 1] - knots[k]), 0.0, 1.0))) / 2.0
-    return np.asarray(values[k] + share * (values[k + 1] - values[k]))
+    inside = (times > knots[0]) & (times < knots[-1])
+    return values[k] + share * (values[k + 1] - values[k]), inside * np.where(k % 2, 1.0 - share, share)
 
 
 def _without_step(plan: Plan, times: Array, context: Context) -> Array:
@@ -180,14 +196,14 @@ def _without_step(plan: Plan, times: Array, context: Context) -> Array:
 def pulses(plan: Plan, beats: Array, shortest: float) -> Array:
     """Return the seconds (k,) at which the dancer goes down: with steps, and with the beat where there are none.
 
-    Steps on `beats` come first, then others after which she stands for `shortest` seconds, then beats; none is nearer
-    to one that is there than that.
+    First come steps after which she stands for `shortest` seconds, those on `beats` before others, then quicker steps
+    on beats, then beats; none is nearer to one that is there than that.
     """
     lands = step_landings(plan)
     on = distances(lands, beats) < ON_BEAT
     long = np.append(np.diff(lands), np.inf) >= shortest
     chosen: list[float] = []
-    for group in (lands[on], lands[~on & long], beats):
+    for group in (lands[on & long], lands[~on & long], lands[on & ~long], beats):
         for second in group.tolist():
             k = bisect_left(chosen, second)
             if all(abs(second - other) >= shortest for other in chosen[max(k - 1, 0) : k + 1]):
@@ -294,21 +310,20 @@ def sway(plan: Plan, times: Array, context: Context) -> Array:
     return np.asarray(plan.hand * (place[k] + share * (place[k + 1] - place[k])))
 
 
-# Arms are carried differently in each phrase of the music: a large way, and a slow one, which no beat shakes.
+# In each phrase of the music, arms are carried differently and the trunk leans more or less: slow, large ways.
 
 AMONG = 1.8  # seconds from a step from which on arms are carried
-ARMS = 2  # of the seeds: other draws than those of `sway`
+ARMS, TRUNK = 2, 3  # of the seeds: other draws than those of `sway`
 
 
 def carriage(plan: Plan, times: Array, context: Context) -> Array:
     """Return how far ahead and up (n, 2) the left and the right hand are carried, about -1 to 1; different in each
     phrase.
 
-    A phrase has as many measures of four beats as last `groove.phrase` at least. A hand is ahead and back in turn,
-    never twice as far, and mostly the other one is elsewhere. In the mirror image of a play the hands are exchanged.
+    A hand is ahead and back in turn, never twice as far, and mostly the other one is elsewhere. In the mirror image of
+    a play the hands are exchanged.
     """
-    numbers, beats = context.settings.groove, np.array(context.beats)
-    at = np.array(heard_beats(tuple(beats[::4].tolist()), numbers.phrase))
+    at, numbers = _phrases(context), context.settings.groove
     if len(at) < 2:
         return np.zeros((len(times), 2))
     chance = chance_of(SEED, ARMS, *plan.song, *context.own)
@@ -316,10 +331,30 @@ def carriage(plan: Plan, times: Array, context: Context) -> Array:
     draws[1:] &= ~draws[:-1]
     first = np.cumprod(np.where(draws[:, 0], 1.0, -1.0))
     place = far * first[:, None] * np.column_stack((np.ones(len(at)), np.where(draws[:, 1], 1.0, -1.0)))
+    out = _through_phrases(at, place, times, numbers.phrase_ease)
+    return out if plan.hand > 0.0 else out[:, ::-1]
+
+
+def bow(plan: Plan, times: Array, context: Context) -> Array:
+    """Return how much (n,) the trunk leans forward, about -1 to 1: more in one phrase, less in the next."""
+    at = _phrases(context)
+    if len(at) < 2:
+        return np.zeros(len(times))
+    chance = chance_of(SEED, TRUNK, *plan.song, *context.own)
+    place = chance.uniform(0.6, 1.0, (len(at), 1)) * np.where(np.arange(len(at)) % 2, 1.0, -1.0)[:, None]
+    return _through_phrases(at, place, times, context.settings.groove.phrase_ease)[:, 0]
+
+
+def _phrases(context: Context) -> Array:
+    """Return when phrases begin (k,), seconds: of as many measures of four beats as last `groove.phrase` at least."""
+    return np.array(heard_beats(tuple(context.beats[::4]), context.settings.groove.phrase))
+
+
+def _through_phrases(at: Array, place: Array, times: Array, ease: float) -> Array:
+    """Return the way (n, c) through a place (k, c) in each of the phrases that begin `at` (k,), k 2 or more."""
     k = np.clip(np.searchsorted(at, times, side="right") - 1, 0, len(at) - 2)
-    since = (times - at[k]) / np.minimum(at[k + 1] - at[k], numbers.phrase_ease)
-    out = place[k] + smooth(since)[:, None] * (place[k + 1] - place[k])
-    return np.asarray(out if plan.hand > 0.0 else out[:, ::-1])
+    since = (times - at[k]) / np.minimum(at[k + 1] - at[k], ease)
+    return np.asarray(place[k] + smooth(since)[:, None] * (place[k + 1] - place[k]))
 
 
 def _among_steps(plan: Plan, times: Array) -> Array:

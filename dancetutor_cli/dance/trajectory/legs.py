@@ -15,6 +15,7 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.trajectory.height import time_for_jumps
 from dancetutor_cli.dance.units import Array
+from dancetutor_cli.feet.limbs import Limb, Part
 
 # The path and direction of the body over the ground; its height, chest and arms follow from them.
 
@@ -95,6 +96,18 @@ def raised(feet: Feet, up: Array) -> Feet:
     """Return the same feet with their heels higher by (n, 2) radians."""
     left, right = (replace(foot, pitch=foot.pitch + up[:, side]) for side, foot in enumerate(feet))
     return left, right
+
+
+def heels_may_rise(plan: Plan, times: Array, down: float) -> Array:
+    """Return how much (n, 2) each heel may rise for the ankle, 0 to 1; 0 while the heel presses a panel.
+
+    down : seconds in which the heel comes down before a press
+    """
+    out = np.ones((len(times), 2))
+    for contact in (c for c in plan.contacts if c.limb < Limb.LEFT_HAND and c.part == Part.HEEL):
+        away = np.maximum(contact.start - times, times - contact.end)
+        out[:, contact.limb] = np.minimum(out[:, contact.limb], smooth(away / down))
+    return out
 
 
 def push_off(plan: Plan, times: Array, feet: Feet, hips: Array, context: Context) -> Array:

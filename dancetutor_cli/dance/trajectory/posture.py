@@ -14,7 +14,7 @@ from dancetutor_cli.dance.rig.body import GRAVITY
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_arms import BarSettings
 from dancetutor_cli.dance.settings_body import BodySettings, LookSettings
-from dancetutor_cli.dance.smoothing import Controller, follow, low_pass, smooth, smooth_path
+from dancetutor_cli.dance.smoothing import Controller, follow, low_pass, smooth, smooth_path, upper_envelope
 from dancetutor_cli.dance.trajectory.balance import Pendulum, Rail, balanced_path
 from dancetutor_cli.dance.trajectory.facing import (
     bent_down,
@@ -39,7 +39,7 @@ from dancetutor_cli.dance.trajectory.height import (
     landing_give,
     tempo_factor,
 )
-from dancetutor_cli.dance.trajectory.legs import Course, above_at_rest, leg_room, raised, upright_hips
+from dancetutor_cli.dance.trajectory.legs import Course, above_at_rest, heels_may_rise, leg_room, raised, upright_hips
 from dancetutor_cli.dance.trajectory.momentum import counter_motion
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.dance.waits import WaitMotion, waiting_at
@@ -47,6 +47,9 @@ from dancetutor_cli.dance.waits import WaitMotion, waiting_at
 BALANCE, HEIGHT = "the balance", "the height of the body"  # what `softened` may name
 STANDING_HEIGHT = 0.93  # metres, of the centre of mass
 LEAST_FALL, LEAST_SEEN = 0.4, 0.3  # parts of g that the ground carries at least, as omega goes by it
+AIR, LANDED = 0.02, 0.05  # seconds over which heels rise in the air and come down again, and for which they stay up
+WIDE = 0.25  # seconds around steps that are wide in which there is less of a bob
+LEGS = 1.0  # of who stands on both legs, the hips list with the beat by this part of the list on one leg
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,8 +175,12 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, roug
     settings, now = context.settings, _situation(plan, times, context)
     course, softened = _course(plan, feet, now, context, rough)
     groove = groove_of(plan, times, now.occupation(settings.bar), context)
+    narrow = 1.0 - upper_envelope(times, _straddled(feet, settings), WIDE)
+    groove = replace(groove, bob=narrow * groove.bob, heels=narrow * groove.heels)
     legs = _leg_goals(plan, feet, now, groove, rough.deeper, settings)
-    height_goals = _height_goals(raised(feet, rough.push_off), course, context, legs)
+    heels = np.radians(settings.groove.heels) * _heels_up(feet, groove, course.rate)
+    heels *= heels_may_rise(plan, times, settings.step.press_time)
+    height_goals = _height_goals(raised(feet, np.maximum(rough.push_off, heels)), course, context, legs)
     mass_height = height_path(height_goals, plan.flights, settings.body)
     chest, head = chest_and_head(plan, course, gaze_ahead(plan, times, settings.walk), settings)
     upright = now.no_palms * (1.0 - now.walks)
@@ -189,6 +196,7 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, roug
     drop += np.radians(settings.groove.lean) * groove.sway
     tilt += drop[:, None] * np.column_stack((np.cos(chest), -np.sin(chest)))
     fold = np.radians(settings.jump.fold) * now.crouch + np.radians(settings.layers.beat_nod) * groove.beat
+    fold += np.radians(settings.groove.bow) * groove.bow
     tilt += fold[:, None] * np.column_stack((np.sin(chest), np.cos(chest))) + jump_lean(plan, times, settings.jump)
     controller = Controller.of(settings.inertia.chest_frequency, settings.inertia.chest_damping)
     apart = 1.0 - settings.jump.together * (1.0 - groove.grounded)
@@ -203,11 +211,11 @@ def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, roug
         head_yaw=head,
         tilt=follow(tilt, course.rate, controller) + answer.tilt,
         reaching=now.reaching,
-        heels=np.zeros((len(times), 2)),
+        heels=heels,
         knees=np.zeros((len(times), 2)),
         beat=groove.beat,
         sway=groove.sway,
-        listed=upright * _pelvic_list(feet, now.tempo, course.rate, settings.body),
+        listed=upright * _pelvic_list(feet, now.tempo, groove.weight, course.rate, settings.body),
         arms=np.column_stack((apart * answer.swing, apart * answer.raised, groove.pump, groove.carried)),
         softened=(*softened, *((HEIGHT,) if mass_height.softened else ())),
     )
@@ -229,7 +237,7 @@ def _leg_goals(
         length,
         most=np.where(feet[0].down | feet[1].down, most, jump.reach),
         sink=sink + (0.0 if now.gait is None else now.gait.sink),
-        bob=narrow * groove.bob,
+        bob=groove.bob,
         bent=bent_down(plan.presses, deeper, times, settings.hands),
         firm=jump.drive * np.maximum(push, catch),
         tempo=now.tempo,
@@ -247,15 +255,25 @@ def _lean(now: Situation, ahead: Array, rate: float, settings: MotionSettings) -
     return np.asarray(lean[:, None] * ahead + leaned_across(now.across, settings.across))
 
 
-def _pelvic_list(feet: Feet, tempo: Array, rate: float, body: BodySettings) -> Array:
+def _pelvic_list(feet: Feet, tempo: Array, weight: Array, rate: float, body: BodySettings) -> Array:
     """Return how much lower (n,) the right hip is than the left one, radians: the pelvis sinks on the side of the leg
     without weight (the pelvic list of Saunders, Inman and Eberhart, *The major determinants in normal and pathological
     gait*, 1953).
     """
-    bears = feet[0].down.astype(np.float64) - feet[1].down
+    bears = np.where(feet[0].down & feet[1].down, LEGS * weight, feet[0].down.astype(np.float64) - feet[1].down)
     over = smooth_path(bears[:, None], np.ones(len(bears)), rate, body.list_time)[:, 0]
     early = np.clip(np.arange(len(over)) + round(body.list_early * rate), 0, len(over) - 1)
     return np.asarray(np.radians(body.list + body.list_stream * tempo) * over[early])
+
+
+def _heels_up(feet: Feet, groove: Groove, rate: float) -> Array:
+    """Return how far (n, 2) heels are up in streams, 0 to 1: between pulses, and in the air, so that the ball lands
+    first.
+    """
+    up = np.column_stack([~foot.down for foot in feet]).astype(np.float64)
+    landed = np.maximum(np.arange(len(up)) - round(LANDED * rate), 0)
+    up = smooth_path(np.maximum(up, up[landed]), np.ones(len(up)), rate, AIR)
+    return np.asarray(groove.heels[:, None] * np.maximum(groove.high[:, None], np.clip(up, 0.0, 1.0)))
 
 
 def _straddled(feet: Feet, settings: MotionSettings) -> Array:

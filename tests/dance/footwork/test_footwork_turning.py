@@ -21,8 +21,8 @@ from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import half_hips
 from dancetutor_cli.dance.rig.skeleton import beyond, dancer_skeleton
 from dancetutor_cli.dance.settings import default_settings
-from dancetutor_cli.dance.settle import heels_may_rise
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.trajectory.legs import heels_may_rise
 from dancetutor_cli.dance.units import Poses
 from dancetutor_cli.feet.limbs import Part
 

@@ -18,6 +18,7 @@ from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.quality.figures import Body, body_of
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
+from dancetutor_cli.dance.trajectory import groove as groove_module
 from dancetutor_cli.dance.trajectory.groove import Groove, Occupation, _bob, groove_of, pulses, repeated
 
 BEATS = tuple(np.arange(0.0, 20.0, 0.5))
@@ -89,7 +90,8 @@ def test_in_streams_knees_are_asked_for_the_beat_but_not_near_jumps_or_by_busy_h
     lowest = TIMES[1:-1][(bob[1:-1] > bob[:-2]) & (bob[1:-1] >= bob[2:]) & inside[1:-1]]
     np.testing.assert_allclose(lowest, 3.15 + 0.5 * np.arange(7), atol=0.01)  # `layers.beat_late` after each beat
     enlarged = 1.0 + (2.0 * np.pi * SETTINGS.body.height_smooth / 0.5) ** 6
-    assert np.ptp(bob[inside]) == pytest.approx(SETTINGS.groove.bob * enlarged, rel=0.03)
+    deeper = (1.0 + groove_module.DEEPER) / 2.0 * (1.0 - groove_module.LEVEL)
+    assert np.ptp(bob[inside]) == pytest.approx(deeper * SETTINGS.groove.bob * enlarged, rel=0.03)
     jumps = groove([(2.0 + 0.5 * k, {0: L, 3: R}) for k in range(12)], tempo=1.0).bob
     assert jumps[(TIMES > 3.0) & (TIMES < 7.0)].max() < 0.1 * np.ptp(bob[inside])
     assert not groove(stream(0.125, 40), tempo=1.0, busy=1.0).bob.any()
@@ -98,7 +100,7 @@ def test_in_streams_knees_are_asked_for_the_beat_but_not_near_jumps_or_by_busy_h
 def test_beats_far_apart_bob_no_farther_than_slow_ones() -> None:
     """At a stop, or where a chart plays with its tempo, a beat lasts seconds; she would bob into the pad."""
     far, still = replace(heard(), beats=tuple(np.arange(0.0, 40.0, 4.0))), planned([(0.0, {0: L})])
-    assert 0.02 < np.ptp(_bob(still, far, TIMES, STILL)) < 0.06
+    assert 0.02 < np.ptp(_bob(still, far, TIMES, STILL)[0]) < 0.06
 
 
 @pytest.mark.parametrize("late", [0.0, 0.2])
@@ -109,7 +111,7 @@ def test_she_goes_down_with_a_step_beside_the_beat_and_less_on_beats_without_one
     steps = found[np.abs(found - np.round(found) - late) < 1e-3]
     assert set(np.arange(1.0, 10.0) + late) <= set(np.round(steps, 4))
     assert np.diff(found).min() >= 0.3 - 1e-9
-    bob = _bob(plan, heard(), TIMES, STILL)
+    bob = _bob(plan, heard(), TIMES, STILL)[0]
     deep = [bob[np.abs(TIMES - 3.0 - at - SETTINGS.layers.beat_late) < 0.08].max() for at in (late, 0.5)]
     assert deep[0] > 1.2 * deep[1]
 
@@ -189,3 +191,32 @@ def test_slow_beats_are_divided_until_a_listener_would_clap_to_them(bpm: float, 
     gaps = np.diff(context.beats)
     np.testing.assert_allclose(gaps, 60.0 / bpm / parts)
     assert gaps.max() <= SETTINGS.layers.beat_longest
+
+
+def test_a_step_with_time_after_it_goes_down_before_one_on_the_beat_without() -> None:
+    """The knee gives where the dancer stands afterwards: with the last step of a run, not with the one before."""
+    plan = planned([(t, {(0, 3)[k % 2]: (L, R)[k % 2]}) for k, t in enumerate((2.0, 2.23, 3.0, 3.23, 4.0, 4.23))])
+    found = pulses(plan, np.arange(0.0, 12.0, 0.5), 0.3)
+    assert {2.23, 3.23, 4.23} <= set(np.round(found, 4)) and not {2.0, 3.0, 4.0} & set(np.round(found, 4))
+
+
+def test_the_quickest_streams_are_more_level(monkeypatch: pytest.MonkeyPatch) -> None:
+    for gap, least, most in ((0.25, 0.999, 1.001), (0.125, 0.68, 0.72)):
+        steps = planned(stream(gap, 48))
+        monkeypatch.undo()
+        bob = _bob(steps, heard(), TIMES, STILL + 1.0)[0]
+        monkeypatch.setattr(groove_module, "LEVEL", 0.0)
+        full = _bob(steps, heard(), TIMES, STILL + 1.0)[0]
+        inside = (TIMES > 3.0) & (TIMES < 7.0)
+        assert least < np.ptp(bob[inside]) / np.ptp(full[inside]) < most
+
+
+def test_the_trunk_leans_more_in_one_phrase_than_in_the_next() -> None:
+    """Mirrored alike: forward is forward."""
+    dance = play(stream(0.25, 32))
+    plans = [plan_of(chart().timing, some, pad()) for some in (dance, mirrored_play(dance, SINGLE))]
+    ways = [groove_of(plan, TIMES, Occupation(STILL + 1.0, STILL, STILL), heard()).bow for plan in plans]
+    np.testing.assert_allclose(ways[0], ways[1], atol=1e-12)
+    inside = (TIMES > 2.0) & (TIMES < 10.0)
+    assert ways[0][inside].max() > 0.5 and ways[0][inside].min() < -0.5
+    assert np.abs(np.diff(ways[0])).max() * 240.0 < 3.0
