@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -143,6 +144,31 @@ def context_of(pad: Pad, settings: MotionSettings, beats: tuple[float, ...] = ()
     low, high = panels.min(axis=0) - HALF_PANEL, panels.max(axis=0) + HALF_PANEL
     ground = Ground((float(low[0]), float(low[1])), (float(high[0]), float(high[1])), settings.walk.floor)
     return Context(dancer_skeleton(), settings, panels, squares_on_ground(pad), ground, beats, bar)
+
+
+# The beats to which she moves.
+
+ON_BEAT = 0.05  # seconds from a beat within which a step is on it
+
+
+@lru_cache(maxsize=8)
+def heard_beats(beats: tuple[float, ...], shortest: float) -> Array:
+    """Return the beats (k,) to which the dancer moves, seconds: quick beats only every second one, or fewer.
+
+    The array is shared between calls: do not change it.
+    """
+    heard: list[float] = []
+    for beat in beats:
+        if not heard or beat - heard[-1] >= shortest:
+            heard.append(beat)
+    return np.array(heard)
+
+
+def is_on_beat(context: Context, second: float) -> bool:
+    """Whether a step at a second is on a beat that the dancer hears."""
+    beats = heard_beats(context.beats, context.settings.layers.beat_shortest)
+    k = int(np.searchsorted(beats, second))
+    return bool((np.abs(beats[max(k - 1, 0) : k + 1] - second) < ON_BEAT).any())
 
 
 # The bar behind the dancer: its place, the stand of a dancer who holds it, and when each hand is on it.

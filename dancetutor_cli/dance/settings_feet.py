@@ -33,6 +33,7 @@ class StepSettings:
     height_fast: Metres
     height_hasty: Metres
     height_even: Metres
+    height_accent: Ratio
     height_far: Ratio
     far: Metres
     fast: Seconds
@@ -69,6 +70,8 @@ class StepSettings:
     pivot_from: Degrees
     pivot_to: Degrees
     pivot_pitch: Degrees
+    pivot_flat: Seconds
+    pivot_flat_ease: Seconds
     home: Metres
     stand: Seconds
     stand_slow: Ratio

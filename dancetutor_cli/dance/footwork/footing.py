@@ -12,6 +12,7 @@ from dancetutor_cli.dance.context import Context, ball_of, middle_of
 from dancetutor_cli.dance.plan import FootTrack, Move, Pivot, Press, Turn
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_feet import StepSettings
+from dancetutor_cli.dance.smoothing import smooth
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play
@@ -140,7 +141,11 @@ class FootState:
         """Return the foot after one more move, standing at its target."""
         if self.moves and move.lift - self.moves[-1].land < self.step.heel_stays:
             heel = self.moves[-1].pitches[2]
-            move = replace(move, pitches=(heel, max(heel, move.pitches[1]), *move.pitches[2:]))
+            top = max(heel, move.pitches[1])
+            if isinstance(move, Pivot):  # it lowers its heel as it turns, if there is time
+                slow = smooth((move.land - move.lift - self.step.pivot_flat) / self.step.pivot_flat_ease)
+                top += float(slow) * (move.pitches[1] - top)
+            move = replace(move, pitches=(heel, top, *move.pitches[2:]))
         return replace(
             self, ball=target, yaw=yaw, free=move.land + FREE_WINDOW, landed=move.land, moves=(*self.moves, move)
         )

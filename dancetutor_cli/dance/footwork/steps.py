@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from dancetutor_cli.dance.clearance import evenness
-from dancetutor_cli.dance.context import HALF_PANEL, PANEL
+from dancetutor_cli.dance.context import HALF_PANEL, PANEL, is_on_beat
 from dancetutor_cli.dance.footwork.flights import Goals, galloping, hop, leap, take_off_for, tuck_for
 from dancetutor_cli.dance.footwork.foothold import (
     Goal,
@@ -200,6 +200,8 @@ def _kind(
     fast = numbers.height_fast + row.haste * (numbers.height_hasty - numbers.height_fast)
     fast += row.haste * float(evenness(duration, numbers)) * (numbers.height_even - numbers.height_hasty)
     fast += numbers.height_far * max(far - numbers.far, 0.0)
+    accent = numbers.height_accent * (1.0 - row.haste)
+    fast *= 1.0 + (accent if is_on_beat(row.context, row.time) else -accent)
     slow = step_height(far, row.time, row.context)
     height = max(slow + row.cut * (fast - slow), numbers.height_lands * duration / (np.pi * max(numbers.rising, 0.2)))
     kind: type[Swing] = Step

@@ -11,6 +11,7 @@ from bake_plays import Event, L, R, chart, context, pad, plan_of, play
 
 from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.footwork.foothold import step_height
+from dancetutor_cli.dance.footwork.planner import plan_dance
 from dancetutor_cli.dance.motion import sample
 from dancetutor_cli.dance.plan import Plan, Sidestep, Step
 from dancetutor_cli.dance.rig.body import world_transforms
@@ -67,3 +68,16 @@ def test_the_heights_of_a_mirrored_play_are_the_same() -> None:
 def test_two_partners_do_not_rise_alike() -> None:
     both = [step_height(0.4, 3.0, replace(context(), person=person)) for person in (0, 1)]
     assert both[0] != both[1]
+
+
+def taps(gap: float, count: int = 24) -> list[Event]:
+    return [(2.0 + gap * k, {(0, 3)[k % 2]: (L, R)[k % 2]}) for k in range(count)]
+
+
+def test_fast_steps_on_beats_rise_more_than_those_between_them() -> None:
+    plan, danced = plan_dance(chart().timing, play(taps(0.25)), pad())
+    beats = np.array(danced.beats)
+    steps = [move for track in plan.feet for move in track.moves if isinstance(move, Step)]
+    away = np.array([np.abs(beats - step.land).min() for step in steps])
+    rises = np.array([step.height for step in steps])
+    assert np.median(rises[away < 0.01]) > 1.2 * np.median(rises[away > 0.1])

@@ -92,6 +92,19 @@ def test_a_heel_does_not_drop_in_no_time() -> None:
     assert np.abs(np.diff(path.pitch)).max() < 0.004  # radians in a tenth of a millisecond
 
 
+@pytest.mark.parametrize(("seconds", "highest"), [(0.12, 14.0), (0.3, 6.0)])
+def test_a_foot_that_turns_after_its_landing_lowers_its_heel_meanwhile(seconds: float, highest: float) -> None:
+    """In the middle of the turn, with time for it, the heel is as high as in a turn of a foot that stood; degrees."""
+    foot = Footing.at_home(context(), 0).feet[0]
+    landing = tuple(np.radians((12.0, 24.0, 14.0, 0.0)))
+    foot = foot.with_move(Step(1.0, 1.2, (0.3, 0.1), 0.2, landing, 0.05), foot.ball, foot.yaw)
+    turn = Pivot(1.201, 1.201 + seconds, (0.3, 0.1), 0.6, tuple(np.radians((0.0, 6.0, 0.0, 0.0))))
+    foot = foot.with_move(turn, foot.ball, foot.yaw)
+    at = np.array([turn.lift, turn.lift + SETTINGS.step.pitch_top * seconds, turn.land])
+    path = foot_path(foot.track(), at, SETTINGS)
+    np.testing.assert_allclose(np.degrees(path.pitch), (14.0, highest, 0.0), atol=0.5)
+
+
 def test_knees_point_farther_outward_in_a_straddle() -> None:
     """A leg that leans aside turns its knee out, but not much farther than its toes point."""
     still = np.zeros(2)
