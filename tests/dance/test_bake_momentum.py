@@ -17,6 +17,7 @@ from dancetutor_cli.dance.rig.body import mass_points, world_transforms
 from dancetutor_cli.dance.settings import default_settings
 from dancetutor_cli.dance.trajectory import momentum as momentum_of_legs
 from dancetutor_cli.dance.trajectory import posture
+from dancetutor_cli.dance.trajectory.height import step_landings
 
 RATE = 120.0
 
@@ -98,6 +99,31 @@ def test_hips_list_with_the_beat_in_jumps(monkeypatch: pytest.MonkeyPatch) -> No
         monkeypatch.setattr(posture, "LEGS", legs)
         tilts.append(report(bake(chart().timing, dance, pad()))["tilt of the hips, deviation"].value)
     assert tilts[0] > tilts[1] + 0.5
+
+
+def test_between_pulses_she_comes_up_whatever_steps_there_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Four steps a second and two pulses: knees that gave after the steps between would cut the way up; centimetres."""
+    dance = play([(1.0 + 0.25 * k, {(0, 2, 1, 3)[k % 4]: (L, R)[k % 2]}) for k in range(96)])
+    give = posture.landing_give
+    bounces = []
+    for after_each in (give, lambda plan, times, _, body: give(plan, times, step_landings(plan), body)):
+        monkeypatch.setattr(posture, "landing_give", after_each)
+        bounces.append(report(bake(chart().timing, dance, pad()))["bounce of the pelvis, deviation"].value)
+    assert bounces[0] > bounces[1] + 0.5
+
+
+def test_she_does_not_fall_so_quickly_that_her_weight_leaves_her_feet() -> None:
+    """With little force on the ground each push of a leg moves the zero-moment point far: out of the soles."""
+    settings = default_settings()
+    dance = play([(1.0 + 0.31 * k, {(0, 2, 1, 3)[k % 4]: (L, R)[k % 2]}) for k in range(80)])
+    balances = []
+    for least in (settings.body.least_force, 0.1):
+        body = replace(settings.body, least_force=least)
+        measured = report(bake(chart().timing, dance, pad(), settings=replace(settings, body=body)))
+        balances.append(measured["balance"].value)
+        if least > 0.1:
+            assert measured["ground force, least"].value > 0.3 and measured["balance"].is_met
+    assert balances[0] > balances[1] + 0.5
 
 
 def test_in_streams_she_goes_up_on_her_balls_between_pulses() -> None:

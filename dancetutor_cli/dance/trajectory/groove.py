@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
-from dancetutor_cli.dance.context import Context
+from dancetutor_cli.dance.context import ON_BEAT, Context, heard_beats
 from dancetutor_cli.dance.plan import Move, Plan, Sidestep, Step, Swing, chance_of
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_body import GrooveSettings, LayerSettings
@@ -17,19 +16,6 @@ from dancetutor_cli.dance.trajectory.height import LOWEST, step_landings
 from dancetutor_cli.dance.units import Array
 
 # The dancer hears the music: between slow steps and in waits, knees and chest give a little on every beat.
-
-
-@lru_cache(maxsize=8)
-def heard_beats(beats: tuple[float, ...], shortest: float) -> Array:
-    """Return the beats (k,) to which the dancer moves, seconds: quick beats only every second one, or fewer.
-
-    The array is shared between calls: do not change it.
-    """
-    heard: list[float] = []
-    for beat in beats:
-        if not heard or beat - heard[-1] >= shortest:
-            heard.append(beat)
-    return np.array(heard)
 
 
 def beat_bounce(context: Context, times: Array, tempo: Array, busy: Array) -> Array:
@@ -65,13 +51,12 @@ BEAT = (
     0.5  # seconds from pulse to pulse at which the dancer bobs by `groove.bob`, and at slower ones; quicker ones less
 )
 BEATS, STEPS = 0.6, 0.07  # how much hands pump with the beat, and seconds over which they go with a step
-PULSE_SHORTEST = 0.30  # seconds from one pulse of the bob to the next at least
-ON_BEAT = 0.05  # seconds from a beat within which a step is on it
+PULSE_SHORTEST = 0.295  # seconds from one pulse of the bob to the next at least
 DEEPER = 1.12  # a pulse is lowered by so much more than raised before it, because straight legs end the way up
-LEVEL, LEVEL_FROM, LEVEL_FULL = 0.3, 5.5, 8.0  # streams of so many steps a second have up to this part less of the bob
+LEVEL, LEVEL_FROM, LEVEL_FULL = 0.28, 5.5, 8.0  # streams of so many steps a second have up to this part less of the bob
 CENTRE = 0.57  # by this part of half the bob the middle of it is lower than the height without it
 WITHOUT_STEP = 0.45  # a beat without a step is danced this part as deep as one with a step
-NEAR_JUMPS = 0.5  # seconds before and after a jump in which the bob is smaller
+NEAR_JUMPS = 0.4  # seconds before and after a jump in which the bob is smaller
 CALM = 0.4  # share of the sway that stops where the dancer comes to rest
 MOSTLY = 0.6  # share of the time, from `groove.mostly` (0) to always (1), in which the trunk moves as in jacks
 
@@ -82,7 +67,8 @@ class Groove:
 
     beat : (n,) 0 to 1, how far the body has given way to the beat; sink : (n,) metres that the knees give
     bob : (n,) metres by which the height is lowered on pulses before smoothing, which leaves `groove.bob` of it
-    heels : (n,) 0 to 1, how much heels take part in that, as in streams; high : (n,) 0 on pulses to 1 between them
+    pulses : (k,) seconds at which she goes down; high : (n,) 0 on them to 1 between them
+    heels : (n,) 0 to 1, how much heels take part in that, as in streams
     sway : (n,) about -1 to 1, to which side the shoulders lean and turn, positive left
     weight : (n,) the same for her weight near jumps, where both feet stand: onto which leg it goes on the beat
     pump : (n,) the same for hands in streams, where the shoulders keep still: with the beat and with the steps
@@ -94,6 +80,7 @@ class Groove:
     beat: Array
     sink: Array
     bob: Array
+    pulses: Array
     heels: Array
     high: Array
     sway: Array
@@ -138,7 +125,8 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
     sink = (1.0 + deeper) * settings.layers.bounce * late
     among = (1.0 - slow / 2.0) * (1.0 - np.clip(occupation.busy + occupation.waits, 0.0, 1.0))
     among *= _grounded(plan, times, NEAR_JUMPS)
-    bob, high = _bob(plan, context, times, occupation.tempo)
+    lows = pulses(plan, heard_beats(context.beats, settings.layers.beat_shortest), PULSE_SHORTEST)
+    bob, high = _bob(plan, lows, times, occupation.tempo, context)
     to_side = sway(plan, times, context)
     free = np.clip(1.0 - share - occupation.busy - occupation.waits, 0.0, 1.0)
     loose = np.clip(1.0 - occupation.busy - occupation.waits, 0.0, 1.0) * _among_steps(plan, times)
@@ -147,19 +135,18 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
     weight = (1.0 - grounded) * np.clip(1.0 - occupation.busy - occupation.waits, 0.0, 1.0) * to_side
     bows = loose * bow(plan, times, context)
     heels = among * occupation.tempo * (1.0 - jacks)
-    return Groove(beat, sink, among * bob, heels, high, share * to_side, weight, pump, grounded, carried, bows)
+    return Groove(beat, sink, among * bob, lows, heels, high, share * to_side, weight, pump, grounded, carried, bows)
 
 
-def _bob(plan: Plan, context: Context, times: Array, tempo: Array) -> tuple[Array, Array]:
-    """Return by how much (n,) the height has to be lowered on pulses, metres: on average by `CENTRE` halves of what
-    remains of it; and where (n,) between pulses each time is, 0 on one to 1 in the middle.
+def _bob(plan: Plan, at: Array, times: Array, tempo: Array, context: Context) -> tuple[Array, Array]:
+    """Return by how much (n,) the height has to be lowered on pulses `at` (k,), metres: on average by `CENTRE` halves
+    of what remains of it; and where (n,) between pulses each time is, 0 on one to 1 in the middle.
 
     Smoothing the height leaves 1 / (1 + (2 pi T / every)^6) of a movement that comes and goes with pulses `every`
     seconds apart. T is the time constant of `height.height_path`. So the movement is enlarged by the inverse, and the
     knees bend no more for that on average. tempo : (n,) as in `height`
     """
     body, late = context.settings.body, context.settings.layers.beat_late
-    at = pulses(plan, heard_beats(context.beats, context.settings.layers.beat_shortest), PULSE_SHORTEST)
     if len(at) < 2:
         return np.zeros(len(times)), np.zeros(len(times))
     gaps = np.diff(at)

@@ -76,11 +76,14 @@ def step_landings(plan: Plan) -> Array:
     return np.unique([swing.land for swing in plan.swings if not isinstance(swing, Jump)])
 
 
-def landing_give(plan: Plan, times: Array, body: BodySettings) -> Array:
-    """Return how far (n,) knees give after steps, metres: most a little after a landing, less if the next is soon."""
+def landing_give(plan: Plan, times: Array, pulses: Array, body: BodySettings) -> Array:
+    """Return how far (n,) knees give after steps, metres: most a little after a landing, less if the next is soon.
+
+    Only steps at `pulses` (k,), seconds, count: after one between two of them the dancer comes up again.
+    """
     lands = sorted({m.land for track in plan.feet for m in track.moves})
-    out = np.zeros(len(times))
-    for land in step_landings(plan).tolist():
+    out, steps = np.zeros(len(times)), step_landings(plan)
+    for land in steps[np.isin(steps, pulses)].tolist():
         k = bisect_right(lands, land + 1e-6)
         room = lands[k] - land if k < len(lands) else np.inf
         size = float(smooth((room - body.land_least) / max(body.land_full - body.land_least, 1e-6)))

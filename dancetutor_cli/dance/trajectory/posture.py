@@ -232,7 +232,7 @@ def _leg_goals(
     length = length + catch * (jump.catch - length)
     most = body.soft_reach + push * max(jump.push - body.soft_reach, 0.0)
     narrow = 1.0 - _straddled(feet, settings)
-    sink = np.maximum(narrow * groove.sink, landing_give(plan, times, body))
+    sink = np.maximum(narrow * groove.sink, landing_give(plan, times, groove.pulses, body))
     return LegGoals(
         length,
         most=np.where(feet[0].down | feet[1].down, most, jump.reach),

@@ -11,7 +11,7 @@ from bake_mirror import mirrored_play
 from bake_plays import Event, L, R, chart, context, pad, plan_of, play
 
 from dancetutor_cli.dance.bake import bake_plan
-from dancetutor_cli.dance.context import Context
+from dancetutor_cli.dance.context import Context, heard_beats
 from dancetutor_cli.dance.footwork.planner import plan_dance
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.plan import Plan
@@ -49,6 +49,11 @@ def planned(events: list[Event]) -> Plan:
 def groove(events: list[Event], tempo: float = 0.0, busy: float = 0.0, waits: float = 0.0) -> Groove:
     occupation = Occupation(STILL + tempo, STILL + busy, STILL + waits)
     return groove_of(plan_of(chart().timing, play(events), pad()), TIMES, occupation, heard())
+
+
+def bob_of(plan: Plan, context: Context, tempo: np.ndarray) -> np.ndarray:  # type: ignore[type-arg]
+    beats = heard_beats(context.beats, context.settings.layers.beat_shortest)
+    return _bob(plan, pulses(plan, beats, groove_module.PULSE_SHORTEST), TIMES, tempo, context)[0]
 
 
 def test_what_is_tapped_again_is_found() -> None:
@@ -99,8 +104,11 @@ def test_in_streams_knees_are_asked_for_the_beat_but_not_near_jumps_or_by_busy_h
 
 def test_beats_far_apart_bob_no_farther_than_slow_ones() -> None:
     """At a stop, or where a chart plays with its tempo, a beat lasts seconds; she would bob into the pad."""
-    far, still = replace(heard(), beats=tuple(np.arange(0.0, 40.0, 4.0))), planned([(0.0, {0: L})])
-    assert 0.02 < np.ptp(_bob(still, far, TIMES, STILL)[0]) < 0.06
+    still, ways = planned([(0.0, {0: L})]), []
+    for gap in (1.0, 4.0):
+        far = replace(heard(), beats=tuple(np.arange(0.0, 40.0, gap)))
+        ways.append(np.ptp(bob_of(still, far, STILL)))
+    assert 0.02 < ways[1] < 1.1 * ways[0]
 
 
 @pytest.mark.parametrize("late", [0.0, 0.2])
@@ -111,7 +119,7 @@ def test_she_goes_down_with_a_step_beside_the_beat_and_less_on_beats_without_one
     steps = found[np.abs(found - np.round(found) - late) < 1e-3]
     assert set(np.arange(1.0, 10.0) + late) <= set(np.round(steps, 4))
     assert np.diff(found).min() >= 0.3 - 1e-9
-    bob = _bob(plan, heard(), TIMES, STILL)[0]
+    bob = bob_of(plan, heard(), STILL)
     deep = [bob[np.abs(TIMES - 3.0 - at - SETTINGS.layers.beat_late) < 0.08].max() for at in (late, 0.5)]
     assert deep[0] > 1.2 * deep[1]
 
@@ -200,13 +208,21 @@ def test_a_step_with_time_after_it_goes_down_before_one_on_the_beat_without() ->
     assert {2.23, 3.23, 4.23} <= set(np.round(found, 4)) and not {2.0, 3.0, 4.0} & set(np.round(found, 4))
 
 
+def test_each_step_has_a_pulse_where_steps_are_as_close_as_pulses_may_be() -> None:
+    """Quarters at 200 beats a minute: seconds that are sums of 0.3 differ by a little less than that."""
+    plan = planned(stream(0.3, 24))
+    inside = pulses(plan, np.arange(0.0, 12.0, 0.5), groove_module.PULSE_SHORTEST)
+    inside = inside[(inside > 2.0 - 1e-9) & (inside < 2.0 + 23.5 * 0.3)]
+    np.testing.assert_allclose(inside, 2.0 + 0.3 * np.arange(24), atol=1e-6)
+
+
 def test_the_quickest_streams_are_more_level(monkeypatch: pytest.MonkeyPatch) -> None:
-    for gap, least, most in ((0.25, 0.999, 1.001), (0.125, 0.68, 0.72)):
+    for gap, least, most in ((0.25, 0.999, 1.001), (0.125, 0.70, 0.74)):
         steps = planned(stream(gap, 48))
         monkeypatch.undo()
-        bob = _bob(steps, heard(), TIMES, STILL + 1.0)[0]
+        bob = bob_of(steps, heard(), STILL + 1.0)
         monkeypatch.setattr(groove_module, "LEVEL", 0.0)
-        full = _bob(steps, heard(), TIMES, STILL + 1.0)[0]
+        full = bob_of(steps, heard(), STILL + 1.0)
         inside = (TIMES > 3.0) & (TIMES < 7.0)
         assert least < np.ptp(bob[inside]) / np.ptp(full[inside]) < most
 
