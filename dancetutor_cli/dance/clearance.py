@@ -60,10 +60,12 @@ def _at_one_speed(s: Array, ends: float) -> Array:
 def rise_share(s: Array, step: StepSettings, even: ArrayLike = 0.0) -> Array:
     """Return how high a foot is in a step, 0 to 1, at each part of its time; it meets the ground at a definite speed.
 
+    It is up a little late and comes down quickly: a foot that sinks onto its panel is not seen to step on it.
+
     The more evenly it moves, the sooner it is up and the later it is down, because a foot near the ground must not
     slide.
     """
-    shape = np.sin(np.pi * s**step.rising)
+    shape = np.sin(np.pi * s**step.rising * (1.0 - step.falling * (1.0 - s)))
     return np.asarray(shape + step.even_up * np.asarray(even, dtype=np.float64) * (hovering(s) - shape))
 
 

@@ -83,6 +83,7 @@ class StepSettings:
     resting: Ratio
     body_turn: Degrees
     rising: Ratio
+    falling: Ratio
     off_ground: Ratio
     on_ground: Ratio
     even_quick: Seconds

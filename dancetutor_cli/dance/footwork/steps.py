@@ -203,7 +203,8 @@ def _kind(
     accent = numbers.height_accent * (1.0 - row.haste)
     fast *= 1.0 + (accent if is_on_beat(row.context, row.time) else -accent)
     slow = step_height(far, row.time, row.context)
-    height = max(slow + row.cut * (fast - slow), numbers.height_lands * duration / (np.pi * max(numbers.rising, 0.2)))
+    least = numbers.height_lands * duration / (np.pi * max(numbers.rising + numbers.falling, 0.2))
+    height = max(slow + row.cut * (fast - slow), least)
     kind: type[Swing] = Step
     if hovering:
         kind, height = Hover, max(height, mines.height)

@@ -10,6 +10,7 @@ from bake_mirror import mirrored_play
 from bake_plays import Event, L, R, chart, context, pad, plan_of, play
 
 from dancetutor_cli.dance.bake import bake
+from dancetutor_cli.dance.foot_path import foot_path
 from dancetutor_cli.dance.footwork.foothold import step_height
 from dancetutor_cli.dance.footwork.planner import plan_dance
 from dancetutor_cli.dance.motion import sample
@@ -72,6 +73,17 @@ def test_two_partners_do_not_rise_alike() -> None:
 
 def taps(gap: float, count: int = 24) -> list[Event]:
     return [(2.0 + gap * k, {(0, 3)[k % 2]: (L, R)[k % 2]}) for k in range(count)]
+
+
+def test_a_foot_comes_down_quicker_than_it_goes_up() -> None:
+    """Metres per second in the first and the last tenth of slow taps in one place: each is seen to land."""
+    plan = plan_of(chart().timing, play(taps(0.8)), pad())
+    for track in plan.feet:
+        for move in (move for move in track.moves[1:] if isinstance(move, Step)):
+            at = move.lift + (move.land - move.lift) * np.array([0.0, 0.1, 0.9, 1.0])
+            height = foot_path(track, at, default_settings()).ball[:, 1]
+            up, down = (height[[1, 2]] - height[[0, 3]]) / (at[1] - at[0])
+            assert down > 0.25 and down > 2.2 * up
 
 
 def test_fast_steps_on_beats_rise_more_than_those_between_them() -> None:
