@@ -7,7 +7,7 @@ import numpy as np
 from dancetutor_cli.dance.physics.repin import AnkleTracks, repinned
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import world_transforms
-from dancetutor_cli.dance.rig.limbs import HAND, Capsule, arm_in_torso, depth, leg_capsules
+from dancetutor_cli.dance.rig.limbs import Capsule, arm_capsules, arm_in_torso, depth, leg_capsules
 from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import both_envelopes, upper_envelope
 from dancetutor_cli.dance.units import Array, Poses
@@ -21,7 +21,6 @@ APART_ROUNDS, APART_STEP = 10, 0.3  # rounds of returning, and the part of the w
 APART_SPAN = 0.4  # seconds around a touch in which an arm goes back and returns
 OUT_ROUNDS, NUDGE, LEAST = 40, 0.02, 0.08  # rounds of pushing out; radians, and metres; metres of depth per radian
 _ARM = ("sternoclavicular", "shoulder", "elbow", "radiocarpal")
-_RADII = (0.045, 0.036, 0.026)  # radii of shoulder, elbow and wrist, metres
 
 
 def clear_arms(skeleton: Skeleton, given: Array, poses: Poses, feet: AnkleTracks, times: Array) -> Array:
@@ -104,7 +103,4 @@ def _arm_depths(skeleton: Skeleton, joints: Array) -> Array:
 
 def _arm(skeleton: Skeleton, joints: Array, side: str) -> list[Capsule]:
     """Return the capsules of the upper arm, and of the forearm with its hand."""
-    shoulder, elbow, wrist = (joints[:, skeleton.index(f"{side}_{n}")] for n in _ARM[1:])
-    along = wrist - elbow
-    tip = wrist + HAND * along / np.linalg.norm(along, axis=1, keepdims=True)
-    return [(shoulder, elbow, *_RADII[:2]), (elbow, tip, *_RADII[1:])]
+    return arm_capsules(*(joints[:, skeleton.index(f"{side}_{n}")] for n in _ARM[1:]))

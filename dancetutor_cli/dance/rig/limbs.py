@@ -247,6 +247,7 @@ def limb(upper: Vec, lower: Vec, hinge: Vec, reach: Vec, pole: Vec, most: float)
 # Limbs as tapered capsules, close to their visible shape, and how deep one capsule is in another.
 
 THIGH, KNEE, ANKLE = 0.068, 0.048, 0.035  # radii of a leg, metres
+SHOULDER, ELBOW, WRIST = 0.045, 0.036, 0.026  # radii of an arm, metres
 GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 STEPS = 16  # steps of the golden section: to 0.05 % of a limb
 Capsule = tuple[Array, Array, float, float]  # ends (f, 3), and the radius at each
@@ -255,6 +256,13 @@ Capsule = tuple[Array, Array, float, float]  # ends (f, 3), and the radius at ea
 def leg_capsules(hip: Array, knee: Array, ankle: Array) -> list[Capsule]:
     """Return the thigh and shank of a leg with joints (f, 3)."""
     return [(hip, knee, THIGH, KNEE), (knee, ankle, KNEE, ANKLE)]
+
+
+def arm_capsules(shoulder: Array, elbow: Array, wrist: Array) -> list[Capsule]:
+    """Return the upper arm, and the forearm with its hand, of an arm with joints (f, 3)."""
+    along = wrist - elbow
+    tip = wrist + HAND * along / np.linalg.norm(along, axis=1, keepdims=True)
+    return [(shoulder, elbow, SHOULDER, ELBOW), (elbow, tip, ELBOW, WRIST)]
 
 
 def depth(first: list[Capsule], second: list[Capsule], steps: int = STEPS) -> Array:
