@@ -3,165 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import replace
 
 import numpy as np
 
 from dancetutor_cli.dance.context import ACROSS_SLOWER, Context, grip_phrases, on_rail, way_time
-from dancetutor_cli.dance.foot_path import both_feet
-from dancetutor_cli.dance.ik.full_body import ArmGoal, arm_rotations, solve_poses
-from dancetutor_cli.dance.ik.hands import Torso, elbows_across, elbows_on_bar, inward, rest_on_bar
-from dancetutor_cli.dance.ik.targets import ik_targets
 from dancetutor_cli.dance.motion import Grip
 from dancetutor_cli.dance.plan import Plan, chance_of
-from dancetutor_cli.dance.rig import quaternion as quat
-from dancetutor_cli.dance.rig.body import SIDES, centre_of_mass, world_transforms
-from dancetutor_cli.dance.rig.quaternion import UP
-from dancetutor_cli.dance.rig.skeleton import beyond
+from dancetutor_cli.dance.rail_reach import RATE, Arm, BarTrunk, SettledTrunks, firm, trunk_of
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_arms import BarSettings
 from dancetutor_cli.dance.trajectory.facing import wrapped
-from dancetutor_cli.dance.trajectory.posture import bake_at_rest, body_trajectory
 from dancetutor_cli.dance.units import Array, Flags
 from dancetutor_cli.feet.play import runs
-
-# An arm beside the bar behind the dancer: where and when its hand may rest on the rail, found with a rough bake.
-
-RATE, BODY_RATE = 30.0, 60.0  # checks per second whether the rail is within reach, and samples of the body's path
-# seconds of a song that are handled together, and how far beyond them the start and the end lie
-PART, PART_MARGIN = 60.0, 4.0
-MORE_ASIDE = 0.020  # metres more to the sides of a trunk that faces the screen: both arms are bent beside it
-TRUNK_ASIDE, TRUNK_DEEP = 0.203, 0.163  # metres, half axes of the trunk with a forearm's thickness and some air
-ALONG = np.linspace(0.15, 1.0, 5)  # points of the forearm and the hand that are checked
-ARMS_BACK = 0.022  # metres that the centre of mass lies farther back when the hands are on the rail
-# a hand on its way that is farther than this from straight outward would go through the trunk
-MOST_INWARD = np.radians(145.0)
-# the same for a hand that crosses over in front of the dancer: last part of its way, and the angles of the rail
-ACROSS = ((0.5, np.radians(60.0), np.radians(172.0)), (1.0, np.radians(60.0), np.radians(330.0)))
-HAND = 0.10  # metres that a hand reaches beyond its wrist
-
-
-@dataclass(frozen=True, slots=True)
-class BarTrunk:
-    """The upper body at n times. pelvis (n, 3), chest (n, 4), shoulders (n, 2, 3), yaw (n,) of the chest, radians.
-
-    turned : (n,) radians, of the pelvis
-    """
-
-    pelvis: Array
-    chest: Array
-    shoulders: Array
-    yaw: Array
-    turned: Array
-
-
-def trunk_of(plan: Plan, times: Array, context: Context) -> BarTrunk:
-    """Return where the upper body will be, computed in parts so that an hour needs little memory."""
-    parts = []
-    for first in np.arange(times[0], times[-1] + 1e-9, PART):
-        parts.append(_part(plan, times[(times >= first) & (times < first + PART)], context))
-    return BarTrunk(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(BarTrunk)))
-
-
-def _part(plan: Plan, at: Array, context: Context) -> BarTrunk:
-    """Return the upper body at the times `at`, by a rough bake without the hands on the bar."""
-    skeleton = context.skeleton
-    low, high = (at[0] - PART_MARGIN) * BODY_RATE, (at[-1] + PART_MARGIN) * BODY_RATE
-    grid = np.arange(np.floor(low), np.ceil(high) + 1) / BODY_RATE
-    feet = both_feet(plan.feet, grid, context.settings)
-    rest = bake_at_rest(plan, grid, context)
-    body = body_trajectory(plan, grid, feet, context, rest)
-    targets = ik_targets(replace(plan, grips=()), body, feet, grid, context)
-    poses = solve_poses(skeleton, targets, context.settings.body.reach)
-    places, world = world_transforms(skeleton, *poses)
-    above = centre_of_mass(skeleton, places, world) - poses.root
-    above[:, 2] -= ARMS_BACK
-    body = body_trajectory(plan, grid, feet, context, replace(rest, trajectory=body, above=above))
-    now = np.round((at - grid[0]) * BODY_RATE).astype(np.int64)
-    pelvis = np.column_stack((body.ground[now, 0], body.height[now], body.ground[now, 1]))
-    shoulders = [places[now, skeleton.index(f"{s}_shoulder")] - poses.root[now] + pelvis for s in SIDES]
-    return BarTrunk(
-        pelvis, world[now, skeleton.index("vt4")], np.stack(shoulders, axis=1), body.chest_yaw[now], body.yaw[now]
-    )
-
-
-class Arm:
-    """One arm, and where on the rail its hand can be at which of the n times.
-
-    apart : (n,) metres beside the pelvis, outward, of the hand's preferred place; None if it crosses over in front
-    """
-
-    def __init__(self, side: int, trunk: BarTrunk, busy: Flags, context: Context, apart: Array | None = None) -> None:
-        assert context.bar is not None
-        self.across = apart is None
-        apart = np.full(len(busy), -context.settings.across.ahead) if apart is None else apart
-        self.side, self.bar, self.trunk, self.busy = side, context.bar, trunk, busy
-        self.skeleton, self.settings = context.skeleton, context.settings
-        self.place = on_rail(trunk.pelvis[:, 0] + (1.0, -1.0)[side] * apart, self.bar, self.settings.bar.from_end)
-
-    def fits(self, x: Array, when: slice) -> Flags:
-        """Whether the hand may rest on the rail at x (k,) at the times `when`, k of them."""
-        side, bar, skeleton, trunk = self.side, self.bar, self.skeleton, self.trunk
-        shoulder, chest = trunk.shoulders[when, side], trunk.chest[when]
-        wrist, hand = rest_on_bar(bar, side, x, skeleton, self.settings.bar, self.across)
-        near = np.linalg.norm(wrist - shoulder, axis=1) <= self.settings.bar.let_go
-        if self.across:
-            elbow = elbows_across(chest)[:, side]
-        else:
-            aside = quat.rotate(quat.from_axis_angle(UP, -trunk.yaw[when]), wrist - shoulder)[:, 0]
-            near &= (aside if side == 0 else -aside) > -self.settings.bar.inward  # no arm goes across the back
-            elbow = elbows_on_bar(chest, self.settings.bar)[:, side]
-        hands = np.tile(hand, (len(wrist), 1))
-        joints = arm_rotations(skeleton, side, ArmGoal(shoulder, chest, wrist, hands, elbow))
-        names = [f"{SIDES[side]}_{n}" for n in ("shoulder", "elbow", "radiocarpal")]
-        for name, rotation in zip(names, joints, strict=True):
-            near &= beyond(skeleton, name, rotation) < -self.settings.bar.comfort if name[2:] != "elbow" else True
-        upper = skeleton.offsets[skeleton.index(names[1])]
-        joint = shoulder + quat.rotate(quat.multiply(chest, joints[0]), upper)
-        return np.asarray(near & ~self._in_trunk(joint, wrist, when) & ~self.busy[when])
-
-    def reachable_span(self, x: float, start: int, stop: int) -> tuple[int, int]:
-        """Return the first and the last check, from `start` to `stop`, at which the hand may rest at x and can reach
-        and leave this place beside the trunk. While the dancer turns quickly it comes later, or leaves earlier.
-        """
-        wrist, _ = rest_on_bar(self.bar, self.side, x, self.skeleton, self.settings.bar, self.across)
-        middle, begin, end = (start + stop) // 2, start, stop
-        for part, least, most in ACROSS if self.across else ((1.0, 0.0, MOST_INWARD),):
-            reach = round(part * self.settings.bar.reach_time * RATE * (ACROSS_SLOWER if self.across else 1.0))
-            first, last = max(start - reach, 0), min(stop + reach, len(self.place))
-            torso = Torso(self.trunk.shoulders[first:last], self.trunk.chest[first:last])
-            angle = inward(np.broadcast_to(wrist, (last - first, 3)), self.side, torso, self.across)
-            through = first + np.flatnonzero((angle < least) | (angle > most))
-            begin = max([begin, *(through[through < middle][-1:] + 1 + reach)])
-            end = min([end, *(through[through >= middle][:1] - reach)])
-        return begin, end
-
-    def _in_trunk(self, elbow: Array, wrist: Array, when: slice) -> Flags:
-        """Whether a forearm from elbow to wrist (k, 3), or its hand, is in the trunk: an upright cylinder that is
-        twisted from the hips to the chest.
-        """
-        trunk = self.trunk
-        top = trunk.shoulders[when].mean(axis=1)
-        along = (wrist - elbow) / np.linalg.norm(wrist - elbow, axis=1, keepdims=True)
-        end = wrist + HAND * along
-        out = np.zeros(len(elbow), dtype=bool)
-        aside = TRUNK_ASIDE + MORE_ASIDE * np.abs(np.cos(trunk.yaw[when]))
-        hips, wrung = trunk.turned[when], trunk.yaw[when] - trunk.turned[when]
-        for share in ALONG:
-            point = elbow + share * (end - elbow)
-            low = trunk.pelvis[when]
-            up = np.clip((point[:, 1] - low[:, 1]) / np.maximum(top[:, 1] - low[:, 1], 0.1), 0.0, 1.0)
-            off = quat.rotate(quat.from_axis_angle(UP, -hips - up * wrung), point - low - up[:, None] * (top - low))
-            out |= (off[:, 0] / aside) ** 2 + (off[:, 2] / TRUNK_DEEP) ** 2 < 1.0
-        return out
-
-
-def firm(free: Flags, early: float) -> Flags:
-    """Return where the hand is free now and also so many seconds before and after."""
-    width = max(1, round(early * RATE))
-    held = np.concatenate((np.repeat(free[:1], width), free, np.repeat(free[-1:], width)))
-    return np.asarray(np.convolve(~held, np.ones(2 * width + 1), "valid") < 0.5)
-
 
 # Turns on the bar in which the far hand crosses over in front of the dancer: which turns, when, and where on the rail.
 
@@ -259,6 +113,10 @@ def _chance(plan: Plan, second: float) -> tuple[float, float]:
 # metres to each side; a place there may be better because a hand can stay longer
 GRIP_OFFSETS = (0.0, 0.05, -0.05, 0.1, -0.1)
 SHORTENING_ROUNDS = 3  # rounds in which grips are shortened to what arms reach
+LEAVING_ROUNDS = 3  # rounds after them in which a grip that is not reached is left out
+SOONER = 0.2  # seconds by which a hand comes later or leaves sooner in a round, if something is wrong on its way
+ELSEWHERE = 0.3  # seconds by which a hand must stay longer elsewhere to go there
+KEPT_EASE = 0.5  # part of an arm's comfort with which a grip stays as it is
 CROSSING_ROUNDS = 2  # rounds of finding out how long a hand that crosses over may stay
 OVERLAP = 0.6  # seconds that a hand stays at most before and after the other one has moved
 LOOK = 10.0  # seconds that are checked together for how long a hand may stay
@@ -293,24 +151,49 @@ def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
         found += list(_pieces(times, arm, context.settings.bar))
     arms = [Arm(side, trunk, busy, context, apart) for side in (0, 1)]
     found += cover_gaps(found, times, arms)
-    for _ in range(SHORTENING_ROUNDS):  # the body is elsewhere where fewer hands hold her
+    trunks = SettledTrunks(plan, times, context)
+    for number in range(SHORTENING_ROUNDS + LEAVING_ROUNDS):  # the body is elsewhere where fewer hands hold her
         found.sort(key=lambda grip: (grip.start, grip.side))
-        trunk = trunk_of(replace(plan, grips=tuple(found)), times, context)
-        found = [part for grip in found if (part := _shortened(grip, times, trunk, busy, context)) is not None]
+        before, settled = found, (times, trunks.holding(tuple(found)), busy, context)
+        found = [p for g in found if (p := _reached(g, settled, number >= SHORTENING_ROUNDS)) is not None]
+        if number < SHORTENING_ROUNDS:
+            arms = [Arm(side, settled[1], busy, context, apart) for side in (0, 1)]
+            found += cover_gaps(found, times, arms)
+        if found == before:
+            break
     return replace(plan, grips=tuple(found))
 
 
-def _shortened(grip: Grip, times: Array, trunk: BarTrunk, busy: Flags, context: Context) -> Grip | None:
-    """Return the longest part of a grip that its arm reaches from this trunk; None if it is too short."""
+def _reached(grip: Grip, settled: tuple[Array, BarTrunk, Flags, Context], whole: bool) -> Grip | None:
+    """Return a grip that its arm reaches from a trunk, or else the longest part of it, None if that is too short.
+
+    settled : the checks' times, the trunk then, whether hands are busy, and the context
+    whole : return None instead of a part
+    """
+    times, trunk, busy, context = settled
+    bar, across = context.settings.bar, context.settings.across
     arm = Arm(grip.side, trunk, busy, context, None if grip.across else np.zeros(len(times)))
     a, b = np.searchsorted(times, (grip.start, grip.end + 0.5 / RATE)).tolist()
-    free = firm(arm.fits(np.full(b - a, grip.x), slice(a, b)), 0.0 if grip.across else context.settings.bar.early)
-    spans = [arm.reachable_span(grip.x, a + first, a + end) for first, end in runs(free).tolist()]
-    start, stop = max(spans, key=lambda s: s[1] - s[0], default=(a, a))
-    shortest = context.settings.across.shortest if grip.across else context.settings.bar.shortest
-    if stop - start < shortest * RATE:
+    way, faulty = round(way_time(grip, bar.reach_time) * RATE), trunk.faulty[:, grip.side]
+    coming, leaving = faulty[max(a - way, 0) : a].any(), faulty[b : b + way].any()
+    if not coming and not leaving and not faulty[a:b].any() and arm.holds(grip.x, a, b, KEPT_EASE):
+        return grip
+    if whole:
         return None
-    return replace(grip, start=float(times[start]), end=float(times[stop - 1]))
+    a, b = a + round(coming * SOONER * RATE), b - round(leaving * SOONER * RATE)
+    if a >= b:
+        return None
+    best, longest = grip.x, (a, a)
+    for aside in FARTHER_AHEAD if grip.across else GRIP_OFFSETS:
+        x = float(on_rail(np.array([grip.x + aside]), arm.bar, bar.from_end)[0])
+        fits = arm.fits(np.full(b - a, x), slice(a, b)) & ~faulty[a:b]
+        for first, end in (a + runs(firm(fits, 0.0 if grip.across else bar.early))).tolist():
+            start, stop = arm.reachable_span(x, first, end)
+            if stop - start > longest[1] - longest[0] + ELSEWHERE * RATE * (x != grip.x):
+                best, longest = x, (start, stop)
+    if longest[1] - longest[0] < (across.shortest if grip.across else bar.shortest) * RATE:
+        return None
+    return replace(grip, start=float(times[longest[0]]), end=float(times[longest[1] - 1]), x=best)
 
 
 def cover_gaps(grips: list[Grip], times: Array, arms: list[Arm]) -> list[Grip]:

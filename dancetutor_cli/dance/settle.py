@@ -31,7 +31,7 @@ from dancetutor_cli.dance.waits import waiting_at
 
 SETTLE_ROUNDS, ROUNDS_WITH_PALMS = 2, 3  # rounds of rough baking until the path of the body is final
 TIGHTENED = 3  # rounds of tightening the limits of balance in the last of these rounds
-COARSE = 4  # a round bakes only one of this many samples of the path
+COARSE_RATE = 60.0  # samples of the path per second that a round bakes
 XZY = [0, 2, 1]  # columns of a place in the order of a path over the ground (x, z) and its height (y)
 OFFSET_SMOOTH = 0.010  # seconds over which the path of the centre of mass from the pelvis is smoothed
 GIVES_SPAN = 0.12  # seconds in which a knee turns to keep its ankle within limits
@@ -54,11 +54,15 @@ class SettledTrajectory:
         return len(self.residuals)
 
 
-def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> SettledTrajectory:
-    """Bake roughly, measure the pose, and plan the path again; times (n,) are even, and `feet` is sampled there."""
+def settle(plan: Plan, times: Array, feet: Feet, context: Context, tightened: int | None = None) -> SettledTrajectory:
+    """Bake roughly, measure the pose, and plan the path again; times (n,) are even, and `feet` is sampled there.
+
+    tightened : as in `balanced_path`, in the last round; None: `TIGHTENED`
+    """
     settings, rate = context.settings, context.settings.sampling.work_rate
     body = body_trajectory(plan, times, feet, context, bake_at_rest(plan, times, context))
-    coarse, ones = times[::COARSE], np.ones(len(times))
+    every = max(1, round(rate / COARSE_RATE))
+    coarse, ones = times[::every], np.ones(len(times))
     deeper, heels, knees = np.zeros(len(plan.presses)), np.zeros((len(times), 2)), np.zeros((len(times), 2))
     may_rise, residuals = heels_may_rise(plan, times, settings.step.press_time), []
     rounds = ROUNDS_WITH_PALMS if plan.presses else SETTLE_ROUNDS
@@ -74,16 +78,16 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context) -> SettledTra
         deeper = _deeper(plan, deeper, coarse, poses.root[:, 1] - targets.pelvis[:, 1], context)
         heels += np.column_stack([np.interp(times, coarse, h) for h in _heels_up(poses.rotations, context)])
         heels = np.maximum(smooth_path(heels, ones, rate, settings.step.ankle_time), 0.0) * may_rise
-        gives = giving_knees(context.skeleton, poses, round(GIVES_SPAN * rate / COARSE))
-        gives[body.reaching[::COARSE].max(axis=1) > 0.0] = 0.0  # there hands on the floor say how she bends
+        gives = giving_knees(context.skeleton, poses, round(GIVES_SPAN * rate / every))
+        gives[body.reaching[::every].max(axis=1) > 0.0] = 0.0  # there hands on the floor say how she bends
         knees += _around(coarse, gives, times)
         hips = cubic(coarse, hips_of(context.skeleton, poses).reshape(-1, 6), times).reshape(-1, 2, 3)
         root = np.column_stack((body.ground[:, 0], body.height, body.ground[:, 1]))
         push = push_off(plan, times, raised(feet, heels), root[:, None] + hips, context) * may_rise
-        turning = rotation_zmp_offset(context.skeleton, *placed, rate / COARSE)
+        turning = rotation_zmp_offset(context.skeleton, *placed, rate / every)
         rough = RoughBake(body, above, cubic(coarse, turning, times), hips, push, deeper)
         if number == rounds - 1:
-            rough = replace(rough, tightened=TIGHTENED)
+            rough = replace(rough, tightened=TIGHTENED if tightened is None else tightened)
         elif number > 0:  # a round in between is for palms: it changes the height, and not the path over the ground
             rough = replace(rough, keep=True)
         body = body_trajectory(plan, times, feet, context, rough)

@@ -1,0 +1,118 @@
+"""Grips are checked against the settled body: what its arms do not reach is cut off, comes later or is left out."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from bake_plays import L, R, chart, pad, play, stream
+
+from dancetutor_cli.dance.bake import bake_plan
+from dancetutor_cli.dance.context import Context
+from dancetutor_cli.dance.footwork.planner import plan_dance
+from dancetutor_cli.dance.grips import KEPT_EASE, _reached
+from dancetutor_cli.dance.motion import Grip, sample
+from dancetutor_cli.dance.plan import Plan
+from dancetutor_cli.dance.rail_reach import RATE, Arm, BarTrunk, SettledTrunks, trunk_of
+from dancetutor_cli.dance.rig.body import world_transforms
+
+WIDE = [(1.0 + 0.5 * k, {(0, 2, 3, 2)[k % 4]: (L, R, R, L)[k % 4]}) for k in range(12)]
+TURN = [(7.2 + 0.7 * k, {(2, 1)[k % 2]: (L, R)[k % 2]}) for k in range(5)]
+EVENTS = [*WIDE, *TURN, *((11.0 + t, e) for t, e in stream(0.0, 12, 0.2))]
+STILL = np.arange(0.0, 8.0, 1.0 / RATE)
+GRIP = Grip(2.0, 6.0, 0, 0.24)
+
+
+@pytest.fixture(scope="module")
+def planned() -> tuple[Plan, Context]:
+    return plan_dance(chart().timing, play(EVENTS), pad(), bar=True)
+
+
+def still(planned: tuple[Plan, Context]) -> BarTrunk:
+    """A body that stands before the rail and does not move."""
+    grid = np.arange(-2.0, 0.0, 1.0 / RATE)
+    trunk = trunk_of(replace(planned[0], grips=(Grip(-5.0, 1.0, 0, 0.24),)), grid, planned[1])
+    return BarTrunk(*(np.repeat(getattr(trunk, f.name)[-1:], len(STILL), axis=0) for f in fields(BarTrunk)))
+
+
+def part_of(planned: tuple[Plan, Context], trunk: BarTrunk, whole: bool = False) -> Grip | None:
+    return _reached(GRIP, (STILL, trunk, np.zeros(len(STILL), dtype=bool), planned[1]), whole)
+
+
+def test_the_settled_body_is_where_the_final_one_is(planned: tuple[Plan, Context]) -> None:
+    plan, context = planned
+    times = np.arange(0.0, 13.0, 1.0 / RATE)
+    settled = SettledTrunks(plan, times, context).holding(plan.grips)
+    rough = trunk_of(plan, times, context)
+    motion = bake_plan(plan, context, 60.0, (0.0, 13.0))
+    inner = (times > motion.times[0]) & (times < motion.times[-1])
+    places, _ = world_transforms(motion.skeleton, *sample(motion, times[inner]))
+    off = []
+    for trunk in (settled, rough):
+        away = [
+            np.linalg.norm(trunk.shoulders[inner, side] - places[:, motion.skeleton.index(f"{name}_shoulder")], axis=1)
+            for side, name in enumerate("lr")
+        ]
+        off.append(float(np.percentile(np.concatenate(away), 99)))
+    assert off[0] < 0.015 and off[0] < 0.6 * off[1], off
+
+
+def test_every_grip_is_reached_from_the_settled_body(planned: tuple[Plan, Context]) -> None:
+    plan, context = planned
+    times = np.arange(-1.0, 14.5, 1.0 / RATE)
+    trunk = SettledTrunks(plan, times, context).holding(plan.grips)
+    grips = [grip for grip in plan.grips if grip.start > 0.0 and grip.end < 13.5]
+    assert len(grips) >= 3
+    for grip in grips:
+        arm = Arm(grip.side, trunk, np.zeros(len(times), dtype=bool), context, None if grip.across else times)
+        a, b = np.searchsorted(times, (grip.start, grip.end + 0.5 / RATE)).tolist()
+        assert arm.fits(np.full(b - a, grip.x), slice(a, b), KEPT_EASE / 2).all()
+
+
+def test_a_grip_that_is_reached_stays(planned: tuple[Plan, Context]) -> None:
+    trunk = still(planned)
+    assert part_of(planned, trunk) == GRIP == part_of(planned, trunk, whole=True)
+
+
+def test_where_the_shoulder_is_too_far_away_the_hand_has_left(planned: tuple[Plan, Context]) -> None:
+    trunk = still(planned)
+    gone = STILL > 4.5
+    trunk.shoulders[gone, 0, 2] += 0.3
+    found = part_of(planned, trunk)
+    assert found is not None and found.start == GRIP.start and 3.5 < found.end < 4.5
+    assert part_of(planned, trunk, whole=True) is None, "the last rounds leave it out"
+
+
+@pytest.mark.parametrize(("wrong", "start", "end"), [(1.8, 0.2, 0.0), (6.3, 0.0, -0.2)])
+def test_a_hand_comes_later_or_leaves_sooner_if_its_way_is_wrong(
+    planned: tuple[Plan, Context], wrong: float, start: float, end: float
+) -> None:
+    trunk = still(planned)
+    trunk.faulty[np.argmin(np.abs(STILL - wrong)), 0] = True
+    found = part_of(planned, trunk)
+    assert found is not None
+    assert found.start - GRIP.start == pytest.approx(start, abs=0.2) and (found.start > GRIP.start) == (start > 0.0)
+    assert found.end - GRIP.end == pytest.approx(end, abs=0.2) and (found.end < GRIP.end) == (end < 0.0)
+    trunk.faulty[:] = False
+    trunk.faulty[:, 1] = True
+    assert part_of(planned, trunk) == GRIP, "the other arm's fault"
+
+
+def test_parts_without_changes_are_not_baked_again(
+    planned: tuple[Plan, Context], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plan, context = planned
+    trunks = SettledTrunks(plan, np.arange(0.0, 13.0, 1.0 / RATE), context)
+    first = trunks.holding(plan.grips)
+    monkeypatch.setattr("dancetutor_cli.dance.rail_reach.settle", None)
+    assert np.array_equal(trunks.holding(plan.grips).shoulders, first.shoulders)
+
+
+def test_a_hand_holds_the_rail_elsewhere_where_it_stays_longer(planned: tuple[Plan, Context]) -> None:
+    trunk, outward = still(planned), replace(GRIP, x=0.30)
+    away = np.where(STILL > 3.5, -0.2, 0.0)
+    trunk.shoulders[..., 0] += away[:, None]  # she moves away from that place, and not from one 5 cm nearer
+    trunk.pelvis[:, 0] += away
+    found = _reached(outward, (STILL, trunk, np.zeros(len(STILL), dtype=bool), planned[1]), False)
+    assert found == replace(outward, x=pytest.approx(0.25))
