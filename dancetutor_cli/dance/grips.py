@@ -112,11 +112,12 @@ def _chance(plan: Plan, second: float) -> tuple[float, float]:
 
 # metres to each side; a place there may be better because a hand can stay longer
 GRIP_OFFSETS = (0.0, 0.05, -0.05, 0.1, -0.1)
-SHORTENING_ROUNDS = 3  # rounds in which grips are shortened to what arms reach
-LEAVING_ROUNDS = 3  # rounds after them in which a grip that is not reached is left out
+SHORTENING_ROUNDS = 2  # rounds in which grips are shortened to what arms reach
+LEAVING_ROUNDS = 2  # rounds after them in which a grip that is not reached is left out
 SOONER = 0.2  # seconds by which a hand comes later or leaves sooner in a round, if something is wrong on its way
 ELSEWHERE = 0.3  # seconds by which a hand must stay longer elsewhere to go there
-KEPT_EASE = 0.5  # part of an arm's comfort with which a grip stays as it is
+BETWEEN = 5  # places on the rail that are tried for two grips as one
+KEPT_EASE = 0.3  # part of an arm's comfort with which a grip stays as it is
 CROSSING_ROUNDS = 2  # rounds of finding out how long a hand that crosses over may stay
 OVERLAP = 0.6  # seconds that a hand stays at most before and after the other one has moved
 LOOK = 10.0  # seconds that are checked together for how long a hand may stay
@@ -154,9 +155,10 @@ def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
     trunks = SettledTrunks(plan, times, context)
     for number in range(SHORTENING_ROUNDS + LEAVING_ROUNDS):  # the body is elsewhere where fewer hands hold her
         found.sort(key=lambda grip: (grip.start, grip.side))
-        before, settled = found, (times, trunks.holding(tuple(found)), busy, context)
+        before, settled = found, (times, trunks.trunk_for(tuple(found)), busy, context)
         found = [p for g in found if (p := _reached(g, settled, number >= SHORTENING_ROUNDS)) is not None]
         if number < SHORTENING_ROUNDS:
+            found = join_grips(found, settled)
             arms = [Arm(side, settled[1], busy, context, apart) for side in (0, 1)]
             found += cover_gaps(found, times, arms)
         if found == before:
@@ -194,6 +196,30 @@ def _reached(grip: Grip, settled: tuple[Array, BarTrunk, Flags, Context], whole:
     if longest[1] - longest[0] < (across.shortest if grip.across else bar.shortest) * RATE:
         return None
     return replace(grip, start=float(times[longest[0]]), end=float(times[longest[1] - 1]), x=best)
+
+
+def join_grips(grips: list[Grip], settled: tuple[Array, BarTrunk, Flags, Context]) -> list[Grip]:
+    """Return the grips, two of one hand as one where the arm reaches a place on the rail all the time: why let go?
+
+    settled : as for `_reached`
+    """
+    times, trunk, busy, context = settled
+    arms = [Arm(side, trunk, busy, context, np.zeros(len(times))) for side in (0, 1)]
+    out = [grip for grip in grips if grip.across]
+    for side, arm in enumerate(arms):
+        own: list[Grip] = []
+        for grip in sorted((g for g in grips if g.side == side and not g.across), key=lambda g: g.start):
+            if own and grip.start - own[-1].end < context.settings.bar.leave:
+                a, b = np.searchsorted(times, (own[-1].start, grip.end + 0.5 / RATE)).tolist()
+                if not trunk.faulty[a:b, side].any():
+                    places = np.linspace(own[-1].x, grip.x, BETWEEN).tolist()
+                    place = next((x for x in places if arm.holds(x, a, b, KEPT_EASE)), None)
+                    if place is not None:
+                        own[-1] = replace(own[-1], end=grip.end, x=place)
+                        continue
+            own.append(grip)
+        out += own
+    return out
 
 
 def cover_gaps(grips: list[Grip], times: Array, arms: list[Arm]) -> list[Grip]:

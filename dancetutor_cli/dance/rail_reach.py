@@ -27,8 +27,8 @@ from dancetutor_cli.dance.units import Array, Flags
 
 RATE, BODY_RATE = 30.0, 60.0  # checks per second whether the rail is within reach, and samples of the body's path
 # seconds of a song that are handled together, and how far beyond them the start and the end lie
-PART, PART_MARGIN = 30.0, 4.0
-FELT = 2.0  # seconds from a grip within which it moves the body
+PART, PART_MARGIN = 30.0, 2.5
+FELT = 1.0  # seconds from a grip within which it moves the body
 TIGHTENED = 1  # rounds of tightening the limits of balance; the final bake has more
 CORRECTIONS = 3  # rounds of moving the body until its centre of mass is on its path
 MORE_ASIDE = 0.020  # metres more to the sides of a trunk that faces the screen: both arms are bent beside it
@@ -106,7 +106,7 @@ class SettledTrunks:
         self.context = replace(context, settings=replace(context.settings, sampling=sampling))
         self.known: dict[float, tuple[tuple[Grip, ...], BarTrunk]] = {}
 
-    def holding(self, grips: tuple[Grip, ...]) -> BarTrunk:
+    def trunk_for(self, grips: tuple[Grip, ...]) -> BarTrunk:
         """Return the upper body of a dancer with these grips, at all times."""
         parts = []
         for first in np.arange(self.times[0], self.times[-1] + 1e-9, PART).tolist():

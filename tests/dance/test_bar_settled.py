@@ -11,7 +11,7 @@ from bake_plays import L, R, chart, pad, play, stream
 from dancetutor_cli.dance.bake import bake_plan
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.footwork.planner import plan_dance
-from dancetutor_cli.dance.grips import KEPT_EASE, _reached
+from dancetutor_cli.dance.grips import KEPT_EASE, _reached, join_grips
 from dancetutor_cli.dance.motion import Grip, sample
 from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.rail_reach import RATE, Arm, BarTrunk, SettledTrunks, trunk_of
@@ -43,7 +43,7 @@ def part_of(planned: tuple[Plan, Context], trunk: BarTrunk, whole: bool = False)
 def test_the_settled_body_is_where_the_final_one_is(planned: tuple[Plan, Context]) -> None:
     plan, context = planned
     times = np.arange(0.0, 13.0, 1.0 / RATE)
-    settled = SettledTrunks(plan, times, context).holding(plan.grips)
+    settled = SettledTrunks(plan, times, context).trunk_for(plan.grips)
     rough = trunk_of(plan, times, context)
     motion = bake_plan(plan, context, 60.0, (0.0, 13.0))
     inner = (times > motion.times[0]) & (times < motion.times[-1])
@@ -61,7 +61,7 @@ def test_the_settled_body_is_where_the_final_one_is(planned: tuple[Plan, Context
 def test_every_grip_is_reached_from_the_settled_body(planned: tuple[Plan, Context]) -> None:
     plan, context = planned
     times = np.arange(-1.0, 14.5, 1.0 / RATE)
-    trunk = SettledTrunks(plan, times, context).holding(plan.grips)
+    trunk = SettledTrunks(plan, times, context).trunk_for(plan.grips)
     grips = [grip for grip in plan.grips if grip.start > 0.0 and grip.end < 13.5]
     assert len(grips) >= 3
     for grip in grips:
@@ -104,15 +104,23 @@ def test_parts_without_changes_are_not_baked_again(
 ) -> None:
     plan, context = planned
     trunks = SettledTrunks(plan, np.arange(0.0, 13.0, 1.0 / RATE), context)
-    first = trunks.holding(plan.grips)
+    first = trunks.trunk_for(plan.grips)
     monkeypatch.setattr("dancetutor_cli.dance.rail_reach.settle", None)
-    assert np.array_equal(trunks.holding(plan.grips).shoulders, first.shoulders)
+    assert np.array_equal(trunks.trunk_for(plan.grips).shoulders, first.shoulders)
 
 
 def test_a_hand_holds_the_rail_elsewhere_where_it_stays_longer(planned: tuple[Plan, Context]) -> None:
     trunk, outward = still(planned), replace(GRIP, x=0.30)
-    away = np.where(STILL > 3.5, -0.2, 0.0)
+    away = np.where(STILL > 3.5, -0.21, 0.0)
     trunk.shoulders[..., 0] += away[:, None]  # she moves away from that place, and not from one 5 cm nearer
     trunk.pelvis[:, 0] += away
     found = _reached(outward, (STILL, trunk, np.zeros(len(STILL), dtype=bool), planned[1]), False)
     assert found == replace(outward, x=pytest.approx(0.25))
+
+
+def test_two_grips_of_a_hand_become_one_where_it_need_not_let_go(planned: tuple[Plan, Context]) -> None:
+    trunk, free = still(planned), np.zeros(len(STILL), dtype=bool)
+    both = [replace(GRIP, end=3.6), replace(GRIP, start=4.3, x=0.22)]
+    assert join_grips(both, (STILL, trunk, free, planned[1])) == [GRIP]
+    trunk.shoulders[(STILL > 3.7) & (STILL < 4.1), 0, 2] += 0.3
+    assert join_grips(both, (STILL, trunk, free, planned[1])) == both, "there it does not reach"
