@@ -99,6 +99,7 @@ _WAYS = (  # far detours, and late ones, which are quick in between, are tried o
 SHARES = np.linspace(0.05, 0.95, 37)  # parts of a swing's time at which shoes are compared
 ANKLE = ball_to_ankle(dancer_skeleton()) - BALL_AHEAD  # metres by which the ankle lies behind the middle of the shoe
 WRONG = 0.10  # metres of missing room with the same weight as a radian by which the legs cross too far
+FARTHER = 0.02  # metres of missing room with the same weight as a metre of detour, where none gives all the room
 TOLERATED = 0.004, 0.006, 0.0  # metres of room that may be missing before farther or later detours are tried
 SHORT = 0.03  # metres; a shorter way has no direction, but a foot may turn on it
 
@@ -146,16 +147,18 @@ def detour(way: Way, other: Array, other_yaw: Array | float, step: StepSettings,
     free = wrung(way, outward * (straight - ANKLE * ahead) - ankle, step)
     if (gaps >= need).all() and free <= 0.0:
         return STRAIGHT
-    most, chosen = -np.inf, STRAIGHT
+    most, missing, chosen = -np.inf, np.inf, STRAIGHT
     for ways, tolerated in zip(_WAYS, TOLERATED, strict=True):
         aside = ways[:, :2] @ axes
         places = straight + bend(e)[:, None] * aside[:, None] - lag(e)[:, None] * (ways[:, 2:] * path)[:, None]
         room = (segment_gaps(*shoe_line(places, ahead), *still) - need).min(axis=1)
         room = np.minimum(room, 0.0) - WRONG * wrung(way, outward * (places - ANKLE * ahead) - ankle, step)
-        if room.max() > most:
-            most, k = float(room.max()), int(np.argmax(room >= min(0.0, room.max())))
+        worth = np.where(room < 0.0, room - FARTHER * np.abs(ways).sum(axis=1), 0.0)
+        if worth.max() > most:
+            k = int(np.argmax(worth))
+            most, missing = float(worth[k]), float(-room[k])
             chosen = Bulge(float(aside[k, 0]), float(aside[k, 1]), float(ways[k, 2]))
-        if most >= -tolerated:
+        if missing <= tolerated:
             break
     return chosen
 

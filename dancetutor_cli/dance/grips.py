@@ -112,12 +112,12 @@ def _chance(plan: Plan, second: float) -> tuple[float, float]:
 
 # metres to each side; a place there may be better because a hand can stay longer
 GRIP_OFFSETS = (0.0, 0.05, -0.05, 0.1, -0.1)
-SHORTENING_ROUNDS = 2  # rounds in which grips are shortened to what arms reach
-LEAVING_ROUNDS = 2  # rounds after them in which a grip that is not reached is left out
+COVERING_ROUNDS = 2  # the first of them, in which a hand also takes the rail where the other one has let go
 SOONER = 0.2  # seconds by which a hand comes later or leaves sooner in a round, if something is wrong on its way
 ELSEWHERE = 0.3  # seconds by which a hand must stay longer elsewhere to go there
 BETWEEN = 5  # places on the rail that are tried for two grips as one
-KEPT_EASE = 0.3  # part of an arm's comfort with which a grip stays as it is
+# part of an arm's comfort with which a grip stays as it is, in each round of cutting grips to what arms reach
+KEPT_EASE = (0.3, 0.3, 0.15, 0.0)
 CROSSING_ROUNDS = 2  # rounds of finding out how long a hand that crosses over may stay
 OVERLAP = 0.6  # seconds that a hand stays at most before and after the other one has moved
 LOOK = 10.0  # seconds that are checked together for how long a hand may stay
@@ -153,11 +153,11 @@ def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
     arms = [Arm(side, trunk, busy, context, apart) for side in (0, 1)]
     found += cover_gaps(found, times, arms)
     trunks = SettledTrunks(plan, times, context)
-    for number in range(SHORTENING_ROUNDS + LEAVING_ROUNDS):  # the body is elsewhere where fewer hands hold her
+    for number in range(len(KEPT_EASE)):  # the body is elsewhere where fewer hands hold her
         found.sort(key=lambda grip: (grip.start, grip.side))
         before, settled = found, (times, trunks.trunk_for(tuple(found)), busy, context)
-        found = [p for g in found if (p := _reached(g, settled, number >= SHORTENING_ROUNDS)) is not None]
-        if number < SHORTENING_ROUNDS:
+        found = [part for grip in found for part in reached_parts(grip, settled, KEPT_EASE[number])]
+        if number < COVERING_ROUNDS:
             found = join_grips(found, settled)
             arms = [Arm(side, settled[1], busy, context, apart) for side in (0, 1)]
             found += cover_gaps(found, times, arms)
@@ -166,42 +166,56 @@ def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
     return replace(plan, grips=tuple(found))
 
 
-def _reached(grip: Grip, settled: tuple[Array, BarTrunk, Flags, Context], whole: bool) -> Grip | None:
-    """Return a grip that its arm reaches from a trunk, or else the longest part of it, None if that is too short.
+def reached_parts(grip: Grip, settled: tuple[Array, BarTrunk, Flags, Context], ease: float) -> list[Grip]:
+    """Return the grip if its arm reaches it from a trunk, or else the parts of it that it reaches and that last.
 
     settled : the checks' times, the trunk then, whether hands are busy, and the context
-    whole : return None instead of a part
+    ease : as for `Arm.fits`, with which the grip stays as it is
     """
     times, trunk, busy, context = settled
-    bar, across = context.settings.bar, context.settings.across
+    bar = context.settings.bar
     arm = Arm(grip.side, trunk, busy, context, None if grip.across else np.zeros(len(times)))
     a, b = np.searchsorted(times, (grip.start, grip.end + 0.5 / RATE)).tolist()
     way, faulty = round(way_time(grip, bar.reach_time) * RATE), trunk.faulty[:, grip.side]
     coming, leaving = faulty[max(a - way, 0) : a].any(), faulty[b : b + way].any()
-    if not coming and not leaving and not faulty[a:b].any() and arm.holds(grip.x, a, b, KEPT_EASE):
-        return grip
-    if whole:
-        return None
-    a, b = a + round(coming * SOONER * RATE), b - round(leaving * SOONER * RATE)
-    if a >= b:
-        return None
-    best, longest = grip.x, (a, a)
+    if not coming and not leaving and not faulty[a:b].any() and arm.holds(grip.x, a, b, ease):
+        return [grip]
+    span = a + round(coming * SOONER * RATE), b - round(leaving * SOONER * RATE)
+    best, place, longest = list[tuple[int, int]](), grip.x, 0.0
     for aside in FARTHER_AHEAD if grip.across else GRIP_OFFSETS:
         x = float(on_rail(np.array([grip.x + aside]), arm.bar, bar.from_end)[0])
-        fits = arm.fits(np.full(b - a, x), slice(a, b)) & ~faulty[a:b]
-        for first, end in (a + runs(firm(fits, 0.0 if grip.across else bar.early))).tolist():
-            start, stop = arm.reachable_span(x, first, end)
-            if stop - start > longest[1] - longest[0] + ELSEWHERE * RATE * (x != grip.x):
-                best, longest = x, (start, stop)
-    if longest[1] - longest[0] < (across.shortest if grip.across else bar.shortest) * RATE:
-        return None
-    return replace(grip, start=float(times[longest[0]]), end=float(times[longest[1] - 1]), x=best)
+        parts = _held_parts(arm, x, span, faulty)
+        held = sum(stop - start for start, stop in parts) - ELSEWHERE * RATE * (x != grip.x)
+        if held > longest:
+            best, place, longest = parts, x, held
+    return [replace(grip, start=float(times[i]), end=float(times[j - 1]), x=place) for i, j in best]
+
+
+def _held_parts(arm: Arm, x: float, span: tuple[int, int], faulty: Flags) -> list[tuple[int, int]]:
+    """Return the parts of a span of checks in which a hand holds the rail at x, with time between them to let go and
+    come back; if it crosses over, only the longest.
+
+    faulty : of all checks, as of `BarTrunk`
+    """
+    bar, (a, b) = arm.settings.bar, span
+    if a >= b:
+        return []
+    shortest = (arm.settings.across.shortest if arm.across else bar.shortest) * RATE
+    fits = arm.fits(np.full(b - a, x), slice(a, b)) & ~faulty[a:b]
+    out: list[tuple[int, int]] = []
+    for first, end in (a + runs(firm(fits, 0.0 if arm.across else bar.early))).tolist():
+        start, stop = arm.reachable_span(x, first, end)
+        if out:
+            start = max(start, out[-1][1] + 2 * round(bar.reach_time * RATE))
+        if stop - start >= shortest:
+            out.append((start, stop))
+    return [max(out, key=lambda part: part[1] - part[0])] if arm.across and out else out
 
 
 def join_grips(grips: list[Grip], settled: tuple[Array, BarTrunk, Flags, Context]) -> list[Grip]:
     """Return the grips, two of one hand as one where the arm reaches a place on the rail all the time: why let go?
 
-    settled : as for `_reached`
+    settled : as for `reached_parts`
     """
     times, trunk, busy, context = settled
     arms = [Arm(side, trunk, busy, context, np.zeros(len(times))) for side in (0, 1)]
@@ -213,7 +227,7 @@ def join_grips(grips: list[Grip], settled: tuple[Array, BarTrunk, Flags, Context
                 a, b = np.searchsorted(times, (own[-1].start, grip.end + 0.5 / RATE)).tolist()
                 if not trunk.faulty[a:b, side].any():
                     places = np.linspace(own[-1].x, grip.x, BETWEEN).tolist()
-                    place = next((x for x in places if arm.holds(x, a, b, KEPT_EASE)), None)
+                    place = next((x for x in places if arm.holds(x, a, b, KEPT_EASE[0])), None)
                     if place is not None:
                         own[-1] = replace(own[-1], end=grip.end, x=place)
                         continue

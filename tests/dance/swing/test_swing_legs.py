@@ -52,6 +52,14 @@ def test_a_way_leads_around_on_the_side_of_the_hips() -> None:
         assert np.sign(angle[-1] - angle[0]) == np.sign(turn) and abs(angle[-1] - angle[0]) > 100.0
 
 
+def test_where_legs_cross_whatever_the_way_is_the_foot_makes_no_far_detour() -> None:
+    """A quick step to behind the other foot, from a chart of doubles: 60 cm aside for 3 degrees less took her hips
+    down by 40 cm."""
+    way = Way(np.array([0.1454, 0.1018]), -1.1122, np.array([-0.044, -0.116]), -0.5463, (-0.7632, -0.4122), 0.3513)
+    aside = detour(way, np.array([-0.058, 0.058]), -1.0649, SETTINGS.step, 1.0)
+    assert 0.05 < np.hypot(aside.x, aside.z) < 0.2
+
+
 def test_feet_crossed_at_the_start_may_uncross() -> None:
     way = Way(np.zeros(2), 0.0, np.ones(2), 0.0, (0.0, 0.0))
     angles = np.linspace(np.radians(SETTINGS.step.cross) + 0.3, 0.0, len(SHARES))
