@@ -163,6 +163,9 @@ def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
             found += cover_gaps(found, times, arms)
         if found == before:
             break
+    else:  # what is out of reach after all rounds is left out
+        settled = times, trunks.trunk_for(tuple(found)), busy, context
+        found = [grip for grip in found if grip in reached_parts(grip, settled, KEPT_EASE[-1])]
     return replace(plan, grips=tuple(found))
 
 
