@@ -17,8 +17,8 @@ In this package "she" is the dancer, whatever character the user draws.
     motion.Motion                   the input of files, films and the quality report
 
 No stage calls a later one. `settle` repeats trajectory and inverse kinematics until the two agree, and returns the
-remaining differences (its residuals). `grips` places hands on the bar after a rough bake. Hair (`physics.hair`) comes
-last.
+remaining differences (its residuals). `grips` places hands on the bar where `rail_reach` says that arms reach it. Hair
+(`physics.hair`) comes last.
 
     units, context, settings      types; panels, bar and skeleton around the dancer; the numbers of
                                   `configs/motion.yaml`, a class for each section: settings_feet, settings_body,

@@ -27,7 +27,7 @@ _COMPONENTS = {"|u1": _BYTE, "<i2": _SHORT, "<u2": _USHORT, "<u4": _UINT, "<f4":
 _TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 _VERTICES, _INDICES = 34962, 34963
 SHORT = 0.3  # metres; with 16 bits, a joint with a shorter reach has an error of less than 0.01 mm
-MOST_PER_SECOND = 29_700  # bytes of an animation with exact legs: two minutes and the dancer's mesh stay below 5 MB
+MOST_PER_SECOND = 29_760  # bytes of an animation with exact legs: two minutes and the dancer's mesh stay below 5 MB
 
 
 def write_glb(path: Path, character: Character, motion: Motion | None = None) -> None:
