@@ -164,11 +164,17 @@ def heard_beats(beats: tuple[float, ...], shortest: float) -> Array:
     return np.array(heard)
 
 
+def distances(seconds: Array, others: Array) -> Array:
+    """Return how far (n,) each of the sorted `others` next to each of `seconds` (n,) is, seconds."""
+    padded = np.concatenate(([-np.inf], others, [np.inf]))
+    k = np.searchsorted(padded, seconds)
+    return np.asarray(np.minimum(seconds - padded[k - 1], padded[k] - seconds))
+
+
 def is_on_beat(context: Context, second: float) -> bool:
     """Whether a step at a second is on a beat that the dancer hears."""
     beats = heard_beats(context.beats, context.settings.layers.beat_shortest)
-    k = int(np.searchsorted(beats, second))
-    return bool((np.abs(beats[max(k - 1, 0) : k + 1] - second) < ON_BEAT).any())
+    return bool(distances(np.array([second]), beats)[0] < ON_BEAT)
 
 
 # The bar behind the dancer: its place, the stand of a dancer who holds it, and when each hand is on it.

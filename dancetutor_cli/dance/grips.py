@@ -112,12 +112,12 @@ def _chance(plan: Plan, second: float) -> tuple[float, float]:
 
 # metres to each side; a place there may be better because a hand can stay longer
 GRIP_OFFSETS = (0.0, 0.05, -0.05, 0.1, -0.1)
-COVERING_ROUNDS = 2  # the first of them, in which a hand also takes the rail where the other one has let go
 SOONER = 0.2  # seconds by which a hand comes later or leaves sooner in a round, if something is wrong on its way
 ELSEWHERE = 0.3  # seconds by which a hand must stay longer elsewhere to go there
 BETWEEN = 5  # places on the rail that are tried for two grips as one
 # part of an arm's comfort with which a grip stays as it is, in each round of cutting grips to what arms reach
 KEPT_EASE = (0.3, 0.3, 0.15, 0.0)
+COVERING_ROUNDS = 2  # first ones of these rounds, in which a hand also takes the rail where the other one has let go
 CROSSING_ROUNDS = 2  # rounds of finding out how long a hand that crosses over may stay
 OVERLAP = 0.6  # seconds that a hand stays at most before and after the other one has moved
 LOOK = 10.0  # seconds that are checked together for how long a hand may stay

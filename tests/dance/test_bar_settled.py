@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from bake_plays import L, R, chart, pad, play, stream
 
+from dancetutor_cli.dance import grips
 from dancetutor_cli.dance.bake import bake_plan
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.footwork.planner import plan_dance
@@ -134,3 +135,23 @@ def test_a_long_grip_that_is_not_reached_for_a_moment_is_two(planned: tuple[Plan
     found = reached_parts(GRIP, (STILL, trunk, np.zeros(len(STILL), dtype=bool), planned[1]), KEPT_EASE[0])
     assert len(found) == 2 and found[0].start == GRIP.start and found[1].end == pytest.approx(GRIP.end, abs=0.05)
     assert found[1].start - found[0].end > 2.0 * planned[1].settings.bar.reach_time - 0.05
+
+
+class Fleeing:
+    """A body that is out of reach half a second before the last hand leaves, however soon that is."""
+
+    def __init__(self, plan: Plan, times: np.ndarray, context: Context) -> None:  # type: ignore[type-arg]
+        self.trunk = trunk_of(plan, times, context)
+        self.times = times
+
+    def trunk_for(self, grips: tuple[Grip, ...]) -> BarTrunk:
+        shoulders = self.trunk.shoulders.copy()
+        shoulders[self.times > max((grip.end for grip in grips), default=np.inf) - 0.5, :, 2] += 0.3
+        return replace(self.trunk, shoulders=shoulders)
+
+
+def test_a_grip_that_no_round_mends_is_left_out(planned: tuple[Plan, Context], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each cut of the last grip moves the body away from what is left of it."""
+    monkeypatch.setattr(grips, "SettledTrunks", Fleeing)
+    plan, context = planned
+    assert not grips.grips_of(replace(plan, grips=()), (-1.0, 13.5), context).grips

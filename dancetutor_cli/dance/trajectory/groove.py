@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dancetutor_cli.dance.context import ON_BEAT, Context, heard_beats
+from dancetutor_cli.dance.context import ON_BEAT, Context, distances, heard_beats
 from dancetutor_cli.dance.plan import Move, Plan, Sidestep, Step, Swing, chance_of
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_body import GrooveSettings, LayerSettings
@@ -196,13 +196,6 @@ def pulses(plan: Plan, beats: Array, shortest: float) -> Array:
             if all(abs(second - other) >= shortest for other in chosen[max(k - 1, 0) : k + 1]):
                 chosen.insert(k, second)
     return np.array(chosen)
-
-
-def distances(seconds: Array, others: Array) -> Array:
-    """Return how far (n,) each of the sorted `others` next to each of `seconds` (n,) is, seconds."""
-    padded = np.concatenate(([-np.inf], others, [np.inf]))
-    k = np.searchsorted(padded, seconds)
-    return np.asarray(np.minimum(seconds - padded[k - 1], padded[k] - seconds))
 
 
 def latest_side(plan: Plan, times: Array) -> Array:
