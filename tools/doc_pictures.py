@@ -81,7 +81,7 @@ def background(folder: Path) -> None:
 
 def crossing(folder: Path) -> None:
     """The same steps by two forms: the left foot over the right one, in front of it and behind it."""
-    chart, cell = written(folder, "dance-double", CROSSWISE, 140), (233, 236)
+    chart, cell = written(folder, "dance-double", CROSSWISE, 140), (233, 220)
     sheet = Image.new("RGB", (3 * cell[0], 2 * cell[1]))
     for row, form in enumerate(("screen", "turning")):
         options = ("--layout", "background", "--size", "520x292", "--section", "0:1.4", "--form", form)
@@ -89,7 +89,7 @@ def crossing(folder: Path) -> None:
         for column, second in enumerate((0.5, 0.7, 0.9)):
             picture = Image.open(found[round(second * FPS)]).convert("RGB")
             left = (picture.width - cell[0]) // 2
-            top = picture.height - cell[1]
+            top = picture.height - cell[1]  # below the call
             sheet.paste(picture.crop((left, top, left + cell[0], top + cell[1])), (column * cell[0], row * cell[1]))
     sheet.save(ROOT / "docs" / "crossing.jpg", quality=88, optimize=True)
 
