@@ -10,6 +10,7 @@ import re
 import secrets
 import shutil
 import stat
+import time
 import uuid
 from collections.abc import Callable, Iterator
 from contextlib import suppress
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
 WORK = ".dancetutor-"  # beginning of the name of a work folder, before 32 random hexadecimal digits
 _WORK_NAME = re.compile(re.escape(WORK) + "[0-9a-f]{32}")
 _DIGEST = re.compile("[0-9a-f]{64}")
+REMOVALS = 20  # how often the removal of a work folder is tried
 _NO_LINK = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
 
 
@@ -135,11 +137,18 @@ def new_work_name() -> str:
 
 
 def remove_work(folder: Path) -> None:
-    """Remove a work folder, or a file or link of this name; the target of a link stays."""
+    """Remove a work folder, or a file or link of this name; the target of a link stays.
+
+    An encoder whose worker was just ended may open its file while the folder is being emptied: then again.
+    """
     try:
         folder.unlink()
     except OSError:
-        shutil.rmtree(folder, ignore_errors=True)
+        for _ in range(REMOVALS):
+            shutil.rmtree(folder, ignore_errors=True)
+            if not folder.exists():
+                return
+            time.sleep(0.05)
 
 
 def move_segment(source: Path, target: Path, digest: str) -> bool:

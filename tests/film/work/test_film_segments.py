@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ import pytest
 
 from dancetutor_cli.film.media.encoder import PICTURES, Encoding
 from dancetutor_cli.film.work import segments
-from dancetutor_cli.film.work.segments import PlanFile, Segment, render_segment
+from dancetutor_cli.film.work.segments import PlanFile, Segment, remove_work, render_segment
 
 
 class _NoFilm:
@@ -44,6 +45,25 @@ def test_half_a_segment_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     with pytest.raises(type(error)):
         render_segment(print, PlanFile(tmp_path / "plan", ""), segment, Encoding("mp4", (64, 36), 30))
     assert [path.name for path in tmp_path.iterdir()] == ["segment_00000.mp4"]
+
+
+def test_a_folder_is_removed_though_an_encoder_still_writes_into_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    work = tmp_path / "work"
+    work.mkdir()
+    (work / "plan.pickle").write_bytes(b"plan")
+    late, rmdir = [work / "late.mp4"], os.rmdir
+
+    def write_first(*place: Any, **options: Any) -> None:
+        for file in late:
+            file.write_bytes(b"an empty film of an encoder whose worker was ended")
+        late.clear()
+        rmdir(*place, **options)
+
+    monkeypatch.setattr(os, "rmdir", write_first)
+    remove_work(work)
+    assert not work.exists() and not late
 
 
 def test_its_own_pictures_are_removed_and_no_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
