@@ -10,7 +10,7 @@ import numpy as np
 from dancetutor_cli.dance.context import ACROSS_SLOWER, Context, grip_phrases, on_rail, way_time
 from dancetutor_cli.dance.motion import Grip
 from dancetutor_cli.dance.plan import Plan, chance_of
-from dancetutor_cli.dance.rail_reach import RATE, Arm, BarTrunk, SettledTrunks, firm, trunk_of
+from dancetutor_cli.dance.rail_reach import RATE, Arm, BarTrunk, RoughTrunks, SettledTrunks, firm
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_arms import BarSettings
 from dancetutor_cli.dance.trajectory.facing import wrapped
@@ -136,14 +136,15 @@ def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
         return plan
     busy = _busy(plan, times, context.settings)
     leaning_back = tuple(Grip(float(times[a]), float(times[b - 1]), 0, 0.0) for a, b in runs(~busy).tolist())
-    trunk = trunk_of(replace(plan, grips=leaning_back), times, context)
+    rough = RoughTrunks(plan, times, context)
+    trunk = rough.trunk_for(leaning_back)
     holds, apart = grip_phrases(plan, times, trunk.yaw, context.settings.bar)
     places = holds, np.tile(apart[:, None], 2)
     found: list[Grip] = []
     wanted = turns(plan, times, trunk, busy, context)
     for _ in range(CROSSING_ROUNDS):
         if wanted:  # the body turns for the grips that were found, not for those that were wanted
-            trunk = trunk_of(replace(plan, grips=(*leaning_back, *wanted)), times, context)
+            trunk = rough.trunk_for((*leaning_back, *wanted))
             found = list(crossings(wanted, times, trunk, busy, context))
             wanted = tuple(found)
     places = around_crossings(plan, times, wanted, places, context)

@@ -18,9 +18,9 @@ from dancetutor_cli.dance.rig.body import SIDES, centre_of_mass, mass_of, world_
 from dancetutor_cli.dance.rig.limbs import ARM, arm_capsules, arm_in_torso, bone_lengths, depth
 from dancetutor_cli.dance.rig.quaternion import UP
 from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond
-from dancetutor_cli.dance.settle import settle, targets_at
+from dancetutor_cli.dance.settle import SettledTrajectory, settle, targets_at
 from dancetutor_cli.dance.smoothing import sample_path
-from dancetutor_cli.dance.trajectory.posture import bake_at_rest, body_trajectory
+from dancetutor_cli.dance.trajectory.posture import Trajectory, bake_at_rest, body_trajectory, situation_of
 from dancetutor_cli.dance.units import Array, Flags
 
 # An arm beside the bar behind the dancer: where and when its hand may rest on the rail, found with a rough bake.
@@ -61,49 +61,15 @@ class BarTrunk:
     faulty: Flags
 
 
-def trunk_of(plan: Plan, times: Array, context: Context) -> BarTrunk:
-    """Return where the upper body will be, computed in parts so that an hour needs little memory."""
-    parts = []
-    for first in np.arange(times[0], times[-1] + 1e-9, PART):
-        parts.append(_part(plan, times[(times >= first) & (times < first + PART)], context))
-    return _joined(parts)
+class RoughTrunks:
+    """Where the upper body will be, by a rough bake without the hands on the bar.
 
-
-def _joined(parts: list[BarTrunk]) -> BarTrunk:
-    return BarTrunk(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(BarTrunk)))
-
-
-def _part(plan: Plan, at: Array, context: Context) -> BarTrunk:
-    """Return the upper body at the times `at`, by a rough bake without the hands on the bar."""
-    skeleton = context.skeleton
-    low, high = (at[0] - PART_MARGIN) * BODY_RATE, (at[-1] + PART_MARGIN) * BODY_RATE
-    grid = np.arange(np.floor(low), np.ceil(high) + 1) / BODY_RATE
-    feet = both_feet(plan.feet, grid, context.settings)
-    rest = bake_at_rest(plan, grid, context)
-    body = body_trajectory(plan, grid, feet, context, rest)
-    targets = ik_targets(replace(plan, grips=()), body, feet, grid, context)
-    poses = solve_poses(skeleton, targets, context.settings.body.reach)
-    places, world = world_transforms(skeleton, *poses)
-    above = centre_of_mass(skeleton, places, world) - poses.root
-    above[:, 2] -= ARMS_BACK
-    body = body_trajectory(plan, grid, feet, context, replace(rest, trajectory=body, above=above))
-    now = np.round((at - grid[0]) * BODY_RATE).astype(np.int64)
-    pelvis = np.column_stack((body.ground[now, 0], body.height[now], body.ground[now, 1]))
-    shoulders = [places[now, skeleton.index(f"{s}_shoulder")] - poses.root[now] + pelvis for s in SIDES]
-    chest, unknown = world[now, skeleton.index("vt4")], np.zeros((len(at), 2), dtype=bool)
-    return BarTrunk(pelvis, chest, np.stack(shoulders, axis=1), body.chest_yaw[now], body.yaw[now], unknown)
-
-
-class SettledTrunks:
-    """Where the upper body will be with the hands on the bar, by a bake that settles as the final one does.
-
-    Parts of the song in which grips are as they were before are not baked again.
+    A song is baked in parts, so that an hour needs little memory. Parts in which grips are as they were before are not
+    baked again.
     """
 
     def __init__(self, plan: Plan, times: Array, context: Context) -> None:
-        sampling = replace(context.settings.sampling, work_rate=BODY_RATE)
-        self.plan, self.times = plan, times
-        self.context = replace(context, settings=replace(context.settings, sampling=sampling))
+        self.plan, self.times, self.context = plan, times, context
         self.known: dict[float, tuple[tuple[Grip, ...], BarTrunk]] = {}
 
     def trunk_for(self, grips: tuple[Grip, ...]) -> BarTrunk:
@@ -114,17 +80,58 @@ class SettledTrunks:
             near = tuple(grip for grip in grips if grip.end > low and grip.start < high)
             if first not in self.known or self.known[first][0] != near:
                 at = self.times[(self.times >= first) & (self.times < first + PART)]
-                self.known[first] = near, _settled_part(replace(self.plan, grips=near), at, self.context)
+                self.known[first] = near, self._bake(replace(self.plan, grips=near), at)
             parts.append(self.known[first][1])
-        return _joined(parts)
+        return BarTrunk(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(BarTrunk)))
+
+    def _bake(self, plan: Plan, at: Array) -> BarTrunk:
+        return _rough_part(plan, at, self.context)
 
 
-def _settled_part(plan: Plan, at: Array, context: Context) -> BarTrunk:
-    """Return the upper body at the times `at`: settled, and then moved until its centre of mass is on its path."""
-    skeleton, reach = context.skeleton, context.settings.body.reach
+class SettledTrunks(RoughTrunks):
+    """The same with the hands on the bar, by a bake that settles as the final one does."""
+
+    def __init__(self, plan: Plan, times: Array, context: Context) -> None:
+        sampling = replace(context.settings.sampling, work_rate=BODY_RATE)
+        super().__init__(plan, times, replace(context, settings=replace(context.settings, sampling=sampling)))
+        self.settled: dict[float, SettledTrajectory] = {}
+
+    def _bake(self, plan: Plan, at: Array) -> BarTrunk:
+        grid, first = _grid_around(at), float(at[0])
+        feet = both_feet(plan.feet, grid, self.context.settings)
+        self.settled[first] = settle(plan, grid, feet, self.context, TIGHTENED, self.settled.get(first))
+        return _settled_part(plan, self.settled[first].trajectory, at, self.context)
+
+
+def _grid_around(at: Array) -> Array:
+    """Return the even times, seconds, of the body's path that is baked for a part of a song at the times `at`."""
     low, high = (at[0] - PART_MARGIN) * BODY_RATE, (at[-1] + PART_MARGIN) * BODY_RATE
-    grid = np.arange(np.floor(low), np.ceil(high) + 1) / BODY_RATE
-    body = settle(plan, grid, both_feet(plan.feet, grid, context.settings), context, TIGHTENED).trajectory
+    return np.arange(np.floor(low), np.ceil(high) + 1) / BODY_RATE
+
+
+def _rough_part(plan: Plan, at: Array, context: Context) -> BarTrunk:
+    """Return the upper body at the times `at`, by a rough bake without the hands on the bar."""
+    skeleton, grid = context.skeleton, _grid_around(at)
+    feet = both_feet(plan.feet, grid, context.settings)
+    rest = bake_at_rest(plan, grid, context)
+    now = situation_of(plan, grid, context)
+    body = body_trajectory(plan, feet, now, context, rest)
+    targets = ik_targets(replace(plan, grips=()), body, feet, grid, context)
+    poses = solve_poses(skeleton, targets, context.settings.body.reach)
+    places, world = world_transforms(skeleton, *poses)
+    above = centre_of_mass(skeleton, places, world) - poses.root
+    above[:, 2] -= ARMS_BACK
+    body = body_trajectory(plan, feet, now, context, replace(rest, trajectory=body, above=above))
+    now = np.round((at - grid[0]) * BODY_RATE).astype(np.int64)
+    pelvis = np.column_stack((body.ground[now, 0], body.height[now], body.ground[now, 1]))
+    shoulders = [places[now, skeleton.index(f"{s}_shoulder")] - poses.root[now] + pelvis for s in SIDES]
+    chest, unknown = world[now, skeleton.index("vt4")], np.zeros((len(at), 2), dtype=bool)
+    return BarTrunk(pelvis, chest, np.stack(shoulders, axis=1), body.chest_yaw[now], body.yaw[now], unknown)
+
+
+def _settled_part(plan: Plan, body: Trajectory, at: Array, context: Context) -> BarTrunk:
+    """Return the upper body at the times `at`, moved until its centre of mass is on the path of a settled body."""
+    skeleton, reach = context.skeleton, context.settings.body.reach
     targets = targets_at(plan, body, (at, both_feet(plan.feet, at, context.settings)), context)
     poses = solve_poses(skeleton, targets, reach, 0.0)
     ground = sample_path(body.mass, body.times, at)

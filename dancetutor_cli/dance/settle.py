@@ -25,7 +25,7 @@ from dancetutor_cli.dance.rig.skeleton import Skeleton
 from dancetutor_cli.dance.smoothing import cubic, sample_path, smooth_path, upper_envelope
 from dancetutor_cli.dance.trajectory.legs import heels_may_rise, push_off, raised
 from dancetutor_cli.dance.trajectory.momentum import rotation_zmp_offset
-from dancetutor_cli.dance.trajectory.posture import RoughBake, Trajectory, bake_at_rest, body_trajectory
+from dancetutor_cli.dance.trajectory.posture import RoughBake, Trajectory, bake_at_rest, body_trajectory, situation_of
 from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.dance.waits import waiting_at
 
@@ -43,10 +43,13 @@ class SettledTrajectory:
     """The final trajectory, after `rounds` of rough baking.
 
     residuals : metres, for each round the largest distance of the centre of mass from its planned place
+    heels, knees : (n, 2) radians, the parts of those of the trajectory that spare the ankles
     """
 
     trajectory: Trajectory
     residuals: tuple[float, ...]
+    heels: Array
+    knees: Array
 
     @property
     def rounds(self) -> int:
@@ -54,18 +57,30 @@ class SettledTrajectory:
         return len(self.residuals)
 
 
-def settle(plan: Plan, times: Array, feet: Feet, context: Context, tightened: int | None = None) -> SettledTrajectory:
+def settle(
+    plan: Plan,
+    times: Array,
+    feet: Feet,
+    context: Context,
+    tightened: int | None = None,
+    start: SettledTrajectory | None = None,
+) -> SettledTrajectory:
     """Bake roughly, measure the pose, and plan the path again; times (n,) are even, and `feet` is sampled there.
 
     tightened : as in `balanced_path`, in the last round; None: `TIGHTENED`
+    start : the result for nearly the same plan; one round is enough from there, if no palm presses a panel
     """
     settings, rate = context.settings, context.settings.sampling.work_rate
-    body = body_trajectory(plan, times, feet, context, bake_at_rest(plan, times, context))
+    now = situation_of(plan, times, context)
     every = max(1, round(rate / COARSE_RATE))
     coarse, ones = times[::every], np.ones(len(times))
     deeper, heels, knees = np.zeros(len(plan.presses)), np.zeros((len(times), 2)), np.zeros((len(times), 2))
     may_rise, residuals = heels_may_rise(plan, times, settings.step.press_time), []
     rounds = ROUNDS_WITH_PALMS if plan.presses else SETTLE_ROUNDS
+    if start is None or plan.presses:
+        body = body_trajectory(plan, feet, now, context, bake_at_rest(plan, times, context))
+    else:
+        body, heels, knees, rounds = start.trajectory, start.heels.copy(), start.knees.copy(), 1
     for number in range(rounds):
         targets = targets_at(plan, body, (coarse, both_feet(plan.feet, coarse, settings)), context)
         poses = solve_poses(context.skeleton, targets, settings.body.reach)
@@ -90,9 +105,9 @@ def settle(plan: Plan, times: Array, feet: Feet, context: Context, tightened: in
             rough = replace(rough, tightened=TIGHTENED if tightened is None else tightened)
         elif number > 0:  # a round in between is for palms: it changes the height, and not the path over the ground
             rough = replace(rough, keep=True)
-        body = body_trajectory(plan, times, feet, context, rough)
+        body = body_trajectory(plan, feet, now, context, rough)
         body = replace(body, heels=heels + np.maximum(push, body.heels), knees=knees)
-    return SettledTrajectory(body, tuple(residuals))
+    return SettledTrajectory(body, tuple(residuals), heels, knees)
 
 
 def _around(coarse: Array, gives: Array, times: Array) -> Array:

@@ -15,7 +15,7 @@ from dancetutor_cli.dance.footwork.planner import plan_dance
 from dancetutor_cli.dance.grips import KEPT_EASE, join_grips, reached_parts
 from dancetutor_cli.dance.motion import Grip, sample
 from dancetutor_cli.dance.plan import Plan
-from dancetutor_cli.dance.rail_reach import RATE, Arm, BarTrunk, SettledTrunks, trunk_of
+from dancetutor_cli.dance.rail_reach import RATE, Arm, BarTrunk, RoughTrunks, SettledTrunks
 from dancetutor_cli.dance.rig.body import world_transforms
 
 WIDE = [(1.0 + 0.5 * k, {(0, 2, 3, 2)[k % 4]: (L, R, R, L)[k % 4]}) for k in range(12)]
@@ -33,7 +33,7 @@ def planned() -> tuple[Plan, Context]:
 def still(planned: tuple[Plan, Context]) -> BarTrunk:
     """A body that stands before the rail and does not move."""
     grid = np.arange(-2.0, 0.0, 1.0 / RATE)
-    trunk = trunk_of(replace(planned[0], grips=(Grip(-5.0, 1.0, 0, 0.24),)), grid, planned[1])
+    trunk = RoughTrunks(planned[0], grid, planned[1]).trunk_for((Grip(-5.0, 1.0, 0, 0.24),))
     return BarTrunk(*(np.repeat(getattr(trunk, f.name)[-1:], len(STILL), axis=0) for f in fields(BarTrunk)))
 
 
@@ -47,7 +47,7 @@ def test_the_settled_body_is_where_the_final_one_is(planned: tuple[Plan, Context
     plan, context = planned
     times = np.arange(0.0, 13.0, 1.0 / RATE)
     settled = SettledTrunks(plan, times, context).trunk_for(plan.grips)
-    rough = trunk_of(plan, times, context)
+    rough = RoughTrunks(plan, times, context).trunk_for(plan.grips)
     motion = bake_plan(plan, context, 60.0, (0.0, 13.0))
     inner = (times > motion.times[0]) & (times < motion.times[-1])
     places, _ = world_transforms(motion.skeleton, *sample(motion, times[inner]))
@@ -111,6 +111,18 @@ def test_parts_without_changes_are_not_baked_again(
     assert np.array_equal(trunks.trunk_for(plan.grips).shoulders, first.shoulders)
 
 
+def test_a_changed_part_settles_from_where_it_was(planned: tuple[Plan, Context]) -> None:
+    """One round from there leads to where all rounds from an upright body lead."""
+    plan, context = planned
+    times = np.arange(0.0, 13.0, 1.0 / RATE)
+    fewer = tuple(grip for grip in plan.grips if grip != max(plan.grips, key=lambda grip: grip.end - grip.start))
+    trunks = SettledTrunks(plan, times, context)
+    before, after = trunks.trunk_for(plan.grips).shoulders, trunks.trunk_for(fewer).shoulders
+    fresh = SettledTrunks(plan, times, context).trunk_for(fewer).shoulders
+    moved, off = (np.linalg.norm(path - fresh, axis=-1).max() for path in (before, after))
+    assert moved > 0.02 and off < 0.25 * moved, (moved, off)
+
+
 def test_a_hand_holds_the_rail_elsewhere_where_it_stays_longer(planned: tuple[Plan, Context]) -> None:
     trunk, outward = still(planned), replace(GRIP, x=0.30)
     away = np.where(STILL > 3.5, -0.21, 0.0)
@@ -141,7 +153,7 @@ class Fleeing:
     """A body that is out of reach half a second before the last hand leaves, however soon that is."""
 
     def __init__(self, plan: Plan, times: np.ndarray, context: Context) -> None:  # type: ignore[type-arg]
-        self.trunk = trunk_of(plan, times, context)
+        self.trunk = RoughTrunks(plan, times, context).trunk_for(plan.grips)
         self.times = times
 
     def trunk_for(self, grips: tuple[Grip, ...]) -> BarTrunk:

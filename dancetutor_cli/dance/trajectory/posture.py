@@ -12,7 +12,6 @@ from dancetutor_cli.dance.gait import GaitPose, gaze_ahead, walk_pose
 from dancetutor_cli.dance.plan import Plan
 from dancetutor_cli.dance.rig.body import GRAVITY
 from dancetutor_cli.dance.settings import MotionSettings
-from dancetutor_cli.dance.settings_arms import BarSettings
 from dancetutor_cli.dance.settings_body import BodySettings, LookSettings
 from dancetutor_cli.dance.smoothing import Controller, follow, low_pass, smooth, smooth_path, upper_envelope
 from dancetutor_cli.dance.trajectory.balance import Pendulum, Rail, balanced_path
@@ -129,6 +128,8 @@ class Situation:
     tempo : (n,) as of `height.tempo_factor`; crouch : (n,) metres, as of `height.jump_crouch`
     reaching : (n, 2) as of `facing.reaching`; gait : the movements of her walks, None without a walk
     leaning : (n,) as of `facing.leaning_share`; across : (n,) as of `facing.crossing_share`
+    shift : (n,) metres that her weight is towards the left foot, in waits and at leisure
+    give : (n,) metres, as of `height.landing_give`
     """
 
     times: Array
@@ -139,6 +140,9 @@ class Situation:
     leaning: Array
     across: Array
     waiting: WaitMotion
+    groove: Groove
+    shift: Array
+    give: Array
 
     @property
     def walks(self) -> Array:
@@ -150,31 +154,31 @@ class Situation:
         """1 where no hand reaches down to a panel, (n,), 0 where one is there."""
         return np.asarray(1.0 - self.reaching.max(axis=1))
 
-    def occupation(self, bar: BarSettings) -> Occupation:
-        """Return how busy she is besides the groove: with panels, with the bar and with walks."""
-        at_bar = np.maximum(bar.calmer * self.leaning, np.abs(self.across))
-        return Occupation(self.tempo, self.reaching.sum(axis=1) + at_bar + self.walks, self.waiting.share)
 
-
-def _situation(plan: Plan, times: Array, context: Context) -> Situation:
-    settings = context.settings
+def situation_of(plan: Plan, times: Array, context: Context) -> Situation:
+    """Return what the dancer does at even `times` (n,), which no rough bake changes."""
+    settings, waiting = context.settings, waiting_at(plan, times, context)
+    tempo, palms = tempo_factor(plan, times, settings), reaching(plan.presses, times, settings.hands)
+    gait = walk_pose(plan.walks, times, settings.walk)
+    leaning = leaning_share(plan.grips, times, settings.bar)
+    across = crossing_share(plan.grips, times, settings.across)
+    busy = palms.sum(axis=1) + np.maximum(settings.bar.calmer * leaning, np.abs(across))
+    busy += 0.0 if gait is None else gait.own
+    groove = groove_of(plan, times, Occupation(tempo, busy, waiting.share), context)
     return Situation(
-        times,
-        tempo=tempo_factor(plan, times, settings),
-        crouch=jump_crouch(plan, times, settings.jump),
-        reaching=reaching(plan.presses, times, settings.hands),
-        gait=walk_pose(plan.walks, times, settings.walk),
-        leaning=leaning_share(plan.grips, times, settings.bar),
-        across=crossing_share(plan.grips, times, settings.across),
-        waiting=waiting_at(plan, times, context),
-    )
+        times, tempo, jump_crouch(plan, times, settings.jump), palms, gait, leaning, across, waiting, groove,
+        shift=waiting.shift + (1.0 - waiting.share) * stance(plan, times, context),
+        give=landing_give(plan, times, groove.pulses, settings.body),
+    )  # fmt: skip
 
 
-def body_trajectory(plan: Plan, times: Array, feet: Feet, context: Context, rough: RoughBake) -> Trajectory:
-    """Return the body on even `times` (n,), with feet sampled there. rough : first `bake_at_rest`, then measured"""
-    settings, now = context.settings, _situation(plan, times, context)
+def body_trajectory(plan: Plan, feet: Feet, now: Situation, context: Context, rough: RoughBake) -> Trajectory:
+    """Return the body at the even times (n,) of `now`, with feet sampled there.
+
+    rough : first `bake_at_rest`, then measured
+    """
+    settings, times, groove = context.settings, now.times, now.groove
     course, softened = _course(plan, feet, now, context, rough)
-    groove = groove_of(plan, times, now.occupation(settings.bar), context)
     narrow = 1.0 - upper_envelope(times, _straddled(feet, settings), WIDE)
     groove = replace(groove, bob=narrow * groove.bob, heels=narrow * groove.heels)
     legs = _leg_goals(plan, feet, now, groove, rough.deeper, settings)
@@ -232,7 +236,7 @@ def _leg_goals(
     length = length + catch * (jump.catch - length)
     most = body.soft_reach + push * max(jump.push - body.soft_reach, 0.0)
     narrow = 1.0 - _straddled(feet, settings)
-    sink = np.maximum(narrow * groove.sink, landing_give(plan, times, groove.pulses, body))
+    sink = np.maximum(narrow * groove.sink, now.give)
     return LegGoals(
         length,
         most=np.where(feet[0].down | feet[1].down, most, jump.reach),
@@ -299,7 +303,6 @@ def _course(
     pendulum = _pendulum(times, rough)
     if now.gait is not None:  # who walks has legs that swing slowly, and her weight on the edges of her soles
         pendulum = replace(pendulum, turning=(1.0 - now.walks)[:, None] * pendulum.turning)
-    shift = now.waiting.shift + (1.0 - now.waiting.share) * stance(plan, times, context)
     if baked is not None:  # heels that rise to spare their ankles carry nothing; palms do, on their way already
         feet = raised(feet, baked.heels * now.no_palms[:, None])
     if context.bar is not None:
@@ -307,7 +310,7 @@ def _course(
         ahead = context.bar.behind + settings.bar.forward - nearer
         held = has_hand_on_bar(plan.grips, times)
         pendulum = replace(pendulum, rail=Rail(ahead, held, settings.bar.soft))
-    mass, swept = balanced_path(feet, pendulum, settings, rough.tightened, plan.hand, shift)
+    mass, swept = balanced_path(feet, pendulum, settings, rough.tightened, plan.hand, now.shift)
     return Course(times, mass, rough.above, rough.hips, yaw), (BALANCE,) if swept else ()
 
 

@@ -11,7 +11,7 @@ from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.foot_path import both_feet
 from dancetutor_cli.dance.layers import Glances, glances_at
 from dancetutor_cli.dance.quality.report import report
-from dancetutor_cli.dance.trajectory.posture import bake_at_rest, body_trajectory
+from dancetutor_cli.dance.trajectory.posture import bake_at_rest, body_trajectory, situation_of
 from dancetutor_cli.feet.play import Play
 
 SINGLE = np.array([3, 1, 2, 0])  # of each column its mirror image
@@ -22,9 +22,8 @@ SLOW: list[Event] = [(2.0 + 1.2 * k, {(0, 3)[k % 2]: (L, R)[k % 2]}) for k in ra
 def glanced(danced: Play) -> Glances:
     where = context()
     plan = plan_of(chart().timing, danced, pad())
-    body = body_trajectory(
-        plan, GRID, both_feet(plan.feet, GRID, where.settings), where, bake_at_rest(plan, GRID, where)
-    )
+    now, feet = situation_of(plan, GRID, where), both_feet(plan.feet, GRID, where.settings)
+    body = body_trajectory(plan, feet, now, where, bake_at_rest(plan, GRID, where))
     return glances_at(plan, body, GRID, where)
 
 
