@@ -222,6 +222,7 @@ class GrooveSettings:
     leisure_full: Seconds
     stance: Metres
     stance_time: Seconds
+    stance_early: Seconds
     phrase: Seconds
     phrase_ease: Duration
     phrase_stays: Ratio

@@ -225,12 +225,15 @@ def stance(plan: Plan, times: Array, context: Context) -> Array:
     numbers = context.settings.groove
     if context.bar is not None:
         return np.zeros(len(times))
-    steps = sorted((m.land, 1.0 - 2.0 * side) for side, track in enumerate(plan.feet) for m in track.moves if _to(m))
+    steps = sorted((m.land, m.lift, 1.0 - 2.0 * k) for k, track in enumerate(plan.feet) for m in track.moves if _to(m))
     if not steps:
         return np.zeros(len(times))
-    lands, sides = np.array(steps).T
+    lands, lifts, sides = np.array(steps).T
     long = np.append(np.diff(lands), np.inf) > context.settings.wait.after + context.settings.wait.ease  # a wait
-    bears = np.append(0.0, np.where(long, 0.0, sides))[np.searchsorted(lands, times)]
+    onto = np.append(np.maximum(lifts[1:] - numbers.stance_early, lands[:-1]), np.inf)
+    knots = np.column_stack((lands, onto)).ravel()
+    stays = np.column_stack((np.where(long, 0.0, sides), np.append(-sides[1:], 0.0))).ravel()
+    bears = np.append(0.0, stays)[np.searchsorted(knots, times)]
     rate = 1.0 / float(times[1] - times[0])
     over = smooth_path(bears[:, None], np.ones(len(times)), rate, numbers.stance_time)[:, 0]
     return numbers.stance * over * leisure(plan, times, numbers) * _grounded(plan, times, 3.0 * numbers.ease)
