@@ -97,6 +97,7 @@ class ArmSettings:
     swing_most: Metres
     swing_upper: Degrees
     swing_bent: Degrees
+    beat_bent: Degrees
     back_most: Degrees
     bent_least: Degrees
     bent_most: Degrees

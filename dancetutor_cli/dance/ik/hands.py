@@ -360,18 +360,19 @@ def bent_arms(
 
 
 def hanging_arms(
-    carried: Array, effort: tuple[Array, Array, Array], swing: tuple[Array, Array], context: Context
+    carried: Array, effort: tuple[Array, Array, Array, Array], swing: tuple[Array, Array], context: Context
 ) -> Array:
     """Return where hands are from their shoulders, (n, 2, 3); a forearm that is carried up stays below level.
 
-    carried : (n, 2), -1 to 1; effort : of streams, 0 to 1, how unlike both hands are, how much time there is, 0 to 1
-    swing : see `bent_arms`
+    carried : (n, 2), -1 to 1; effort : of streams, 0 to 1, how unlike both hands are, how much time there is, 0 to 1,
+    and how much elbows bend for the beat, 0 to 1; swing : see `bent_arms`
     """
-    arms, (streams, unlike, easy) = context.settings.arms, effort
+    arms, (streams, unlike, easy, beat) = context.settings.arms, effort
     bent = (arms.bent + easy * (arms.bent_easy - arms.bent) + arms.stream_bent * streams) * unlike
     bent = bent + arms.carried_bent * carried
     upper = arms.carried_upper * carried - arms.upper_back - arms.stream_back * streams
     bent = bent - soft_excess(bent + upper - arms.forearm_most, LEVEL_SOFT)
+    bent = bent + arms.beat_bent * unlike * beat
     highest = np.radians(arms.forearm_easy + (1.0 - easy) * LEVEL)
     return bent_arms(swing[0], np.radians(bent), np.radians(upper), swing[1], context, highest)
 

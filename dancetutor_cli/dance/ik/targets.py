@@ -179,9 +179,9 @@ def free_hands(plan: Plan, body: Trajectory, context: Context) -> FreeHands:
     swing += (arms.wander + arms.stream_wander * effort) * wander[..., 2] + arms.askew * askew[..., 2]
     swing += waiting.swing
     # forearms are up in one phrase of the music, and hang in another, less far where hands swing
-    carried = body.arms[:, 3:] * (1.0 + easy * (arms.carried_easy - 1.0))
+    carried = body.arms[:, 4:] * (1.0 + easy * (arms.carried_easy - 1.0))
     out = np.array([1.0, -1.0]) * (arms.out + arms.stream_out * effort + arms.carried_out * _upward(carried))
-    eased = (effort, unlike, easy), (swing, out)
+    eased = (effort, unlike, easy, body.arms[:, 3:4]), (swing, out)
     hang = hanging_arms(carried, *eased, context)
     way = hang - hanging_arms(np.zeros_like(carried), *eased, context)
     raised = _upward(np.outer(body.arms[:, 1], (1.0, -1.0)))

@@ -52,6 +52,7 @@ BEAT = (
 )
 BEATS, STEPS = 0.6, 0.07  # how much hands pump with the beat, and seconds over which they go with a step
 PULSE_SHORTEST = 0.295  # seconds from one pulse of the bob to the next at least
+FOREARMS_LATE, ARMS_STILL = 0.05, 0.45  # seconds by which forearms follow the bob; part of it that quick steps take
 DEEPER = 1.12  # a pulse is lowered by so much more than raised before it, because straight legs end the way up
 LEVEL, LEVEL_FROM, LEVEL_FULL = 0.28, 5.5, 8.0  # streams of so many steps a second have up to this part less of the bob
 CENTRE = 0.57  # by this part of half the bob the middle of it is lower than the height without it
@@ -69,6 +70,7 @@ class Groove:
     bob : (n,) metres by which the height is lowered on pulses before smoothing, which leaves `groove.bob` of it
     pulses : (k,) seconds at which she goes down; high : (n,) 0 on them to 1 between them
     heels : (n,) 0 to 1, how much heels take part in that, as in streams
+    flexed : (n,) 0 to 1, how much elbows bend between pulses: forearms go up as she does, and drop with her
     sway : (n,) about -1 to 1, to which side the shoulders lean and turn, positive left
     weight : (n,) the same for her weight near jumps, where both feet stand: onto which leg it goes on the beat
     pump : (n,) the same for hands in streams, where the shoulders keep still: with the beat and with the steps
@@ -83,6 +85,7 @@ class Groove:
     pulses: Array
     heels: Array
     high: Array
+    flexed: Array
     sway: Array
     weight: Array
     pump: Array
@@ -135,7 +138,11 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
     weight = (1.0 - grounded) * np.clip(1.0 - occupation.busy - occupation.waits, 0.0, 1.0) * to_side
     bows = loose * bow(plan, times, context)
     heels = among * occupation.tempo * (1.0 - jacks)
-    return Groove(beat, sink, among * bob, lows, heels, high, share * to_side, weight, pump, grounded, carried, bows)
+    flexed = among * np.interp(times - FOREARMS_LATE, times, high) * _pulse_room(lows, times)
+    flexed *= 1.0 - ARMS_STILL * occupation.tempo
+    return Groove(
+        beat, sink, among * bob, lows, heels, high, flexed, share * to_side, weight, pump, grounded, carried, bows
+    )
 
 
 def _bob(plan: Plan, at: Array, times: Array, tempo: Array, context: Context) -> tuple[Array, Array]:
@@ -169,6 +176,11 @@ def _bob(plan: Plan, at: Array, times: Array, tempo: Array, context: Context) ->
     share = (1.0 - np.cos(np.pi * np.clip((times - knots[k]) / (knots[k + 1] - knots[k]), 0.0, 1.0))) / 2.0
     inside = (times > knots[0]) & (times < knots[-1])
     return values[k] + share * (values[k + 1] - values[k]), inside * np.where(k % 2, 1.0 - share, share)
+
+
+def _pulse_room(at: Array, times: Array) -> Array:
+    """Return how much time (n,) there is from one pulse `at` (k,) to the next, 0 to 1."""
+    return np.interp(times, at, np.minimum(np.gradient(at) / BEAT, 1.0) ** 2) if len(at) > 1 else np.zeros(len(times))
 
 
 def _without_step(plan: Plan, times: Array, context: Context) -> Array:

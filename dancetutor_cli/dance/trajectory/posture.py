@@ -62,7 +62,8 @@ class Trajectory:
     knees : (n, 2), radians that knees are turned outward to spare the ankles
     beat : (n,) 0 to 1, how far she has given way to the beat; sway : (n,) as in `groove.Groove`
     listed : (n,) radians that the right hip is lower than the left one
-    arms : (n, 5) `swing` and `raised` as in `momentum.CounterMotion`, `pump` and `carried` as in `groove.Groove`
+    arms : (n, 6) `swing` and `raised` as in `momentum.CounterMotion`, `pump`, `flexed` and `carried` as in
+    `groove.Groove`
     softened : the paths that had no solution within the limits of legs and soles, so that these gave way; for people
     """
 
@@ -220,7 +221,7 @@ def body_trajectory(plan: Plan, feet: Feet, now: Situation, context: Context, ro
         beat=groove.beat,
         sway=groove.sway,
         listed=upright * _pelvic_list(feet, now.tempo, groove.weight, course.rate, settings.body),
-        arms=np.column_stack((apart * answer.swing, apart * answer.raised, groove.pump, groove.carried)),
+        arms=np.column_stack((apart * answer.swing, apart * answer.raised, groove.pump, groove.flexed, groove.carried)),
         softened=(*softened, *((HEIGHT,) if mass_height.softened else ())),
     )
 
