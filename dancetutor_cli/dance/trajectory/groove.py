@@ -52,7 +52,7 @@ BEAT = (
 )
 BEATS, STEPS = 0.6, 0.07  # how much hands pump with the beat, and seconds over which they go with a step
 PULSE_SHORTEST = 0.295  # seconds from one pulse of the bob to the next at least
-FOREARMS_LATE, ARMS_STILL = 0.05, 0.75  # seconds by which forearms follow the bob; part of it that quick steps take
+FOREARMS_LATE, ARMS_STILL = 0.05, 0.9  # seconds by which forearms follow the bob; part of it that quick steps take
 DEEPER = 1.12  # a pulse is lowered by so much more than raised before it, because straight legs end the way up
 LEVEL, LEVEL_FROM, LEVEL_FULL = 0.28, 5.5, 8.0  # streams of so many steps a second have up to this part less of the bob
 CENTRE = 0.57  # by this part of half the bob the middle of it is lower than the height without it

@@ -48,7 +48,7 @@ STANDING_HEIGHT = 0.93  # metres, of the centre of mass
 LEAST_FALL, LEAST_SEEN = 0.4, 0.3  # parts of g that the ground carries at least, as omega goes by it
 AIR, LANDED = 0.02, 0.05  # seconds over which heels rise in the air and come down again, and for which they stay up
 WIDE = 0.25  # seconds around steps that are wide in which there is less of a bob
-LEGS = 1.0  # of who stands on both legs, the hips list with the beat by this part of the list on one leg
+LEGS = 1.2  # of who stands on both legs, the hips list with the beat by this part of the list on one leg
 
 
 @dataclass(frozen=True, slots=True)
