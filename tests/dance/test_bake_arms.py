@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from bake_plays import L, R, chart, pad, play, stream
@@ -20,7 +22,7 @@ from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.settings import default_settings
 from dancetutor_cli.run.reading import charts_path
 
-STREAM, WAIT = np.arange(3.0, 6.5, 0.05), np.arange(9.0, 16.0, 0.05)
+STREAM, WAIT, BEATS = np.arange(3.0, 6.5, 0.05), np.arange(9.0, 16.0, 0.05), np.arange(4.0, 14.0, 0.05)
 
 
 @pytest.fixture(scope="module")
@@ -42,6 +44,18 @@ def test_hands_are_up_in_streams_and_hang_in_waits(danced: Motion) -> None:
     for side in (0, 1):
         assert busy[side, :, 1].mean() > waiting[side, :, 1].mean() + 0.04
         assert waiting[side, :, 1].mean() < -0.38
+
+
+def test_hands_go_up_and_down_with_the_beat() -> None:
+    """Elbows bend as she comes up, more than the swing of the arms would bend them."""
+    reach = []
+    for beat in (default_settings().arms.beat_bent, 0.0):
+        settings = default_settings()
+        settings = replace(settings, arms=replace(settings.arms, beat_bent=beat))
+        up = hands(bake(chart().timing, play(stream(2.0, 30, 0.45)), pad(), settings=settings), BEATS)[..., 1]
+        windows = np.lib.stride_tricks.sliding_window_view(up, 18, axis=1)
+        reach.append(float(np.median(np.ptp(windows, axis=2))))
+    assert reach[0] > 1.15 * reach[1], reach
 
 
 def test_hands_in_streams_are_aside_and_each_at_its_own_height(danced: Motion) -> None:

@@ -234,7 +234,7 @@ def leg_shakes(plan: Plan, mines: Array, context: Context) -> list[tuple[int, Sh
             wanted = chance.random() < loose.share
             for leg in range(legs):
                 foot = (side + leg) % 2 ^ plan.lead
-                shake = _shake(foot, time, current_stand(plan.feet, time), chance, context)
+                shake = _shake(foot, time, current_stand(plan.feet, time, plan.turns), chance, context)
                 if shake.land > lift - loose.ready:
                     break
                 if wanted and not _moves(plan, shake.lift - loose.between, shake.land + loose.between):

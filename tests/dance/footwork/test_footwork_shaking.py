@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from bake_plays import plan_of
 
-from dancetutor_cli.dance.bake import bake
+from dancetutor_cli.dance.bake import bake, bake_plan
 from dancetutor_cli.dance.foot_path import foot_path
+from dancetutor_cli.dance.footwork.planner import plan_dance
 from dancetutor_cli.dance.plan import Plan, Shake, Swing
 from dancetutor_cli.dance.quality.figures import body_of
 from dancetutor_cli.dance.quality.report import report
@@ -105,3 +106,15 @@ def test_numbers_that_make_no_sense_do_not_hang() -> None:
     nothing = replace(LOOSE, every=0.0, between=0.0, up=0.0, shortest=0.0, longest=0.0, pause=0.0, ready=0.0)
     settings = replace(SETTINGS, loose=nothing)
     assert shakes(plan_of(chart().timing, danced(8.0), pad(), settings=settings))
+
+
+def test_a_turned_dancer_shakes_a_leg_behind_her() -> None:
+    """Not behind the pad: her foot would go aside, and her hips down."""
+    steps = [(2.0, {0: L}), (2.5, {3: R}), (3.0, {2: L}), (3.5, {1: R}), (60.0, {2: L})]
+    plan, context = plan_dance(chart().timing, play(steps), pad(), bar=True)
+    found = [shake for _, shake in shakes(plan) if shake.lift < 59.0]
+    yaw = [turn.yaw for turn in plan.turns if turn.end < 5.0][-1]
+    assert found and abs(yaw) > np.radians(60.0)
+    assert {shake.heading for shake in found} == {yaw}
+    motion = bake_plan(plan, context, 60.0, (found[0].lift - 1.0, found[0].land + 1.0))
+    assert body_of(motion).joints[:, 0, 1].min() > 0.7

@@ -14,12 +14,12 @@ from dancetutor_cli.dance.bake import bake_plan
 from dancetutor_cli.dance.context import Context, heard_beats
 from dancetutor_cli.dance.footwork.planner import plan_dance
 from dancetutor_cli.dance.motion import Motion
-from dancetutor_cli.dance.plan import Plan
+from dancetutor_cli.dance.plan import Plan, Step
 from dancetutor_cli.dance.quality.figures import Body, body_of
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.dance.trajectory import groove as groove_module
-from dancetutor_cli.dance.trajectory.groove import Groove, Occupation, _bob, groove_of, pulses, repeated
+from dancetutor_cli.dance.trajectory.groove import Groove, Occupation, _bob, groove_of, pulses, repeated, stance
 
 BEATS = tuple(np.arange(0.0, 20.0, 0.5))
 TIMES = np.arange(0.0, 12.0, 1.0 / 240.0)
@@ -62,6 +62,27 @@ def test_what_is_tapped_again_is_found() -> None:
     inside = (TIMES > 3.0) & (TIMES < 7.0)
     assert repeated(jacks, TIMES, settings)[inside].min() > 0.99
     assert repeated(steps, TIMES, settings).max() < 0.01
+
+
+def test_before_a_step_her_weight_is_on_the_foot_that_stands() -> None:
+    """Also if the foot that has landed is the one that steps again, and after a wait."""
+    plan = planned([*((2.0 + 1.0 * k, {0: L}) for k in range(5)), (10.0, {0: L})])
+    over = stance(plan, TIMES, heard())
+    lifts = [move.lift for move in plan.feet[0].moves if isinstance(move, Step) and move.land > 2.5]
+    assert len(lifts) >= 5
+    assert np.interp(lifts, TIMES, over).max() < -0.1
+
+
+def test_elbows_bend_between_pulses() -> None:
+    """Less where pulses are quick, for hands would jerk."""
+    slow, quick = groove(stream(0.45)), groove(stream(0.3))
+    for found in (slow, quick):
+        at = found.pulses[(found.pulses > 3.0) & (found.pulses < 8.0)]
+        middles = (at[1:] + at[:-1]) / 2.0
+        low, high = (np.interp(t + 0.15, TIMES, found.flexed).mean() for t in (at, middles))
+        assert high > low + 0.12
+    inside = (TIMES > 3.0) & (TIMES < 8.0)
+    assert np.ptp(quick.flexed[inside]) < 0.8 * np.ptp(slow.flexed[inside])
 
 
 def test_jumps_are_no_jacks_and_one_tap_in_a_stream_is_nothing() -> None:
