@@ -116,7 +116,7 @@ SOONER = 0.2  # seconds by which a hand comes later or leaves sooner in a round,
 ELSEWHERE = 0.3  # seconds by which a hand must stay longer elsewhere to go there
 BETWEEN = 5  # places on the rail that are tried for two grips as one
 # part of an arm's comfort with which a grip stays as it is, in each round of cutting grips to what arms reach
-KEPT_EASE = (0.3, 0.3, 0.15, 0.0)
+KEPT_EASE = (0.3, 0.3, 0.15, 0.0, 0.0, 0.0, 0.0)
 COVERING_ROUNDS = 2  # first ones of these rounds, in which a hand also takes the rail where the other one has let go
 CROSSING_ROUNDS = 2  # rounds of finding out how long a hand that crosses over may stay
 OVERLAP = 0.6  # seconds that a hand stays at most before and after the other one has moved
@@ -164,10 +164,11 @@ def grips_of(plan: Plan, span: tuple[float, float], context: Context) -> Plan:
             found += cover_gaps(found, times, arms)
         if found == before:
             break
-    else:  # what is out of reach after all rounds is left out
-        settled = times, trunks.trunk_for(tuple(found)), busy, context
+    before = []
+    while found != before:  # what is out of reach after all rounds is left out, until nothing more is
+        before, settled = found, (times, trunks.trunk_for(tuple(found)), busy, context)
         found = [grip for grip in found if grip in reached_parts(grip, settled, KEPT_EASE[-1])]
-    return replace(plan, grips=tuple(found))
+    return replace(plan, grips=tuple(sorted(found, key=lambda grip: (grip.start, grip.side))))
 
 
 def reached_parts(grip: Grip, settled: tuple[Array, BarTrunk, Flags, Context], ease: float) -> list[Grip]:

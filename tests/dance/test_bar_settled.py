@@ -153,7 +153,7 @@ class Fleeing:
     """A body that is out of reach half a second before the last hand leaves, however soon that is."""
 
     def __init__(self, plan: Plan, times: np.ndarray, context: Context) -> None:  # type: ignore[type-arg]
-        self.trunk = RoughTrunks(plan, times, context).trunk_for(plan.grips)
+        self.trunk = RoughTrunks(plan, times, context).trunk_for((Grip(-5.0, 20.0, 0, 0.24),))
         self.times = times
 
     def trunk_for(self, grips: tuple[Grip, ...]) -> BarTrunk:
@@ -167,3 +167,23 @@ def test_a_grip_that_no_round_mends_is_left_out(planned: tuple[Plan, Context], m
     monkeypatch.setattr(grips, "SettledTrunks", Fleeing)
     plan, context = planned
     assert not grips.grips_of(replace(plan, grips=()), (-1.0, 13.5), context).grips
+
+
+class Leaning(Fleeing):
+    """A body that is out of reach from 2 seconds before the last hand leaves on, but until 5 seconds always there."""
+
+    def trunk_for(self, grips: tuple[Grip, ...]) -> BarTrunk:
+        shoulders = self.trunk.shoulders.copy()
+        last = max((grip.end for grip in grips), default=0.0)
+        shoulders[self.times > max(last - 2.0, 5.0), :, 2] += 0.3
+        return replace(self.trunk, shoulders=shoulders)
+
+
+def test_grips_are_checked_again_after_others_are_left_out(
+    planned: tuple[Plan, Context], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(grips, "SettledTrunks", Leaning)
+    monkeypatch.setattr(grips, "KEPT_EASE", (0.3,))
+    plan, context = planned
+    found = grips.grips_of(replace(plan, grips=()), (-1.0, 13.5), context).grips
+    assert found and all(grip.end <= 5.0 + 1.0 / RATE for grip in found), found
