@@ -74,12 +74,12 @@ class RoughTrunks:
 
     def trunk_for(self, grips: tuple[Grip, ...]) -> BarTrunk:
         """Return the upper body of a dancer with these grips, at all times."""
-        parts = []
-        for first in np.arange(self.times[0], self.times[-1] + 1e-9, PART).tolist():
+        parts, firsts = [], np.arange(self.times[0], self.times[-1] + 1e-9, PART)
+        for at in np.split(self.times, np.searchsorted(self.times, firsts[1:])):
+            first = float(at[0])
             low, high = first - PART_MARGIN - FELT, first + PART + PART_MARGIN + FELT
             near = tuple(grip for grip in grips if grip.end > low and grip.start < high)
             if first not in self.known or self.known[first][0] != near:
-                at = self.times[(self.times >= first) & (self.times < first + PART)]
                 self.known[first] = near, self._bake(replace(self.plan, grips=near), at)
             parts.append(self.known[first][1])
         return BarTrunk(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(BarTrunk)))

@@ -111,6 +111,16 @@ def test_parts_without_changes_are_not_baked_again(
     assert np.array_equal(trunks.trunk_for(plan.grips).shoulders, first.shoulders)
 
 
+@pytest.mark.parametrize("start", [-1.0, -0.7530159, -0.35508187121005497, 0.01469842000779975])
+def test_each_time_is_in_one_part(start: float, planned: tuple[Plan, Context], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever the rounding of their bounds."""
+    parts: list[np.ndarray] = []  # type: ignore[type-arg]
+    times, empty = np.arange(start, start + 300.0, 1.0 / RATE), BarTrunk(*(np.zeros((0, 2)) for _ in fields(BarTrunk)))
+    monkeypatch.setattr(RoughTrunks, "_bake", lambda self, plan, at: (parts.append(at), empty)[1])
+    RoughTrunks(planned[0], times, planned[1]).trunk_for(())
+    assert len(parts) in (10, 11) and np.array_equal(np.concatenate(parts), times)
+
+
 def test_a_changed_part_settles_from_where_it_was(planned: tuple[Plan, Context]) -> None:
     """One round from there leads to where all rounds from an upright body lead."""
     plan, context = planned
