@@ -179,7 +179,9 @@ def _bob(plan: Plan, at: Array, times: Array, tempo: Array, context: Context) ->
 
 
 def _pulse_room(at: Array, times: Array) -> Array:
-    """Return how much time (n,) there is from one pulse `at` (k,) to the next, 0 to 1."""
+    """Return how far (n,) elbows can bend from one pulse `at` (k,), seconds, to the next, 0 to 1: by the square of the
+    time between them, for hands would jerk.
+    """
     return np.interp(times, at, np.minimum(np.gradient(at) / BEAT, 1.0) ** 2) if len(at) > 1 else np.zeros(len(times))
 
 
@@ -232,7 +234,8 @@ def leisure(plan: Plan, times: Array, numbers: GrooveSettings) -> Array:
 
 def stance(plan: Plan, times: Array, context: Context) -> Array:
     """Return how far (n,) the weight must be towards the left foot, metres, at even times. If there is time, it goes
-    onto the foot that has landed and stays there until the next one has landed; not near jumps, nor at the bar.
+    onto the foot that has landed, and `groove.stance_early` before the next step onto the foot that stands then; not
+    near jumps, nor at the bar.
     """
     numbers = context.settings.groove
     if context.bar is not None:
