@@ -11,6 +11,7 @@ from bake_plays import MEDLEY, L, R, chart, pad, play
 from dancetutor_cli.dance import settle
 from dancetutor_cli.dance.bake import bake
 from dancetutor_cli.dance.motion import Motion, sample
+from dancetutor_cli.dance.quality import liveliness
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import mass_points, world_transforms
@@ -124,6 +125,18 @@ def test_she_does_not_fall_so_quickly_that_her_weight_leaves_her_feet() -> None:
         if least > 0.1:
             assert measured["ground force, least"].value > 0.3 and measured["balance"].is_met
     assert balances[0] > balances[1] + 0.5
+
+
+def test_a_few_landings_have_no_median(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nine counted landings in 40 s at the bar, of which five were between two pulses: a give of 0.2 degrees."""
+    motion = bake(
+        chart().timing, play([(1.0 + 0.5 * k, {(0, 2, 1, 3)[k % 4]: (L, R)[k % 2]}) for k in range(48)]), pad()
+    )
+    for count in (liveliness.FEWEST - 1, liveliness.FEWEST):
+        monkeypatch.setattr(liveliness, "landings", lambda *_, count=count: (np.full(count, 0.2), np.full(count, 1.0)))
+        figures = report(motion)
+        for name in ("give of the knee at landings, median", "roll of the foot at landings, median"):
+            assert figures[name].is_met is (None if count < liveliness.FEWEST else False)
 
 
 def test_in_streams_she_goes_up_on_her_balls_between_pulses() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from dancetutor_cli.dance.motion import Contact, Motion
-from dancetutor_cli.dance.quality.dynamics import residuals
+from dancetutor_cli.dance.quality.dynamics import LEAST, dynamics_figures, residuals
 from dancetutor_cli.dance.quality.figures import body_of, penetration, physical_foot_contact, skating_ratio
 from dancetutor_cli.dance.rig import quaternion as quat
 from dancetutor_cli.dance.rig.body import GRAVITY
@@ -54,6 +54,15 @@ def test_friction_carries_only_so_much_and_a_turning_body_needs_a_moment() -> No
     in_air = replace(spinning, root=spinning.root + np.array([0, 0.3, 0]))
     inertia = residuals(in_air, body_of(in_air))[30:-30, 1].max() / (0.5 * (2 * np.pi) ** 2 / GRAVITY)
     assert 0.01 < inertia < 0.06, "kg m^2 per kg of a person about her long axis, arms in an A"
+
+
+def test_a_moment_without_a_hand_on_the_bar_is_no_percentile() -> None:
+    """Of 6 frames of a quick jump, between two grips, the median was a goal missed."""
+    for count, measured in ((LEAST - 1, False), (LEAST, True)):
+        motion = stiff(np.zeros((count + 6, 3)))  # three frames at each end are left out
+        figures = dynamics_figures(motion, body_of(motion))
+        assert len(residuals(motion, body_of(motion))) == count
+        assert all(np.isnan(figure.value) != measured for figure in figures)
 
 
 def test_moments_in_which_hands_push_are_left_out() -> None:

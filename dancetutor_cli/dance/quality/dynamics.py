@@ -26,6 +26,7 @@ CUT = 10.0  # Hz; accelerations above it come from single frames, not from the b
 FRICTION = 0.8  # coefficient of friction of a sole on a pad
 CONTACT = GROUND + 0.004  # metres over the ground up to which a sole point can push
 MOST = 3000  # largest number of measured frames
+LEAST = 100  # and smallest: a 99th percentile of fewer is the largest one; at the bar that may be one short flight
 GYRATION = 0.29  # radius of gyration of a part about its middle, in parts of its length, as of a rod
 WIDE = 0.09  # metres to both sides of the middle of the pelvis, a part without a length
 HANDS = 0.15  # seconds around a pressing palm, or a hand on the bar, that are left out, because hands can push, too
@@ -42,7 +43,7 @@ def dynamics_figures(motion: Motion, body: Body) -> tuple[Figure, ...]:
     out = []
     for k, (name, unit, (median, most)) in enumerate(zip(names, units, goals, strict=True)):
         v = values[:, k]
-        both = (float(np.median(v)), float(np.percentile(v, 99))) if len(v) else (float("nan"),) * 2
+        both = (float(np.median(v)), float(np.percentile(v, 99))) if len(v) >= LEAST else (float("nan"),) * 2
         out.append(Figure(f"{name}, median", both[0], unit, median))
         out.append(Figure(f"{name}, 99th percentile", both[1], unit, most))
     return tuple(out)

@@ -22,6 +22,7 @@ BOUNCE = (0.7, 5.0)  # Hz, of the height of the pelvis
 NEAR, STILL, LIFTED = 0.03, 0.35, 0.03  # metres and metres per second of a ball that is down; metres of a raised ball
 BEFORE, RESTS, GIVES = 0.2, 0.085, 0.25  # seconds: up before a landing; down after it; in which a knee gives
 ROLL = (0.067, 0.1)  # seconds before and after a landing between which the foot's pitch is compared
+FEWEST = 10  # landings; the median of fewer depends on which ones they are
 UPPER = ("lean", "lean most", "twist", "wrists")  # figures of trunk and arms
 HAND_TURN = 2000.0  # degrees per second that a hand turns on its forearm at most
 
@@ -81,8 +82,8 @@ def _values(body: Body, skeleton: Skeleton, stepping: NDArray[np.bool_]) -> dict
         "wrists": 100.0
         * float(np.mean([np.linalg.norm(_ways(body, skeleton, s)[stepping].std(axis=0)) for s in "lr"])),
         "bounce": 100.0 * float(_band(height, body.rate).std()),
-        "give": float(np.median(gives)) if len(gives) else float("nan"),
-        "roll": float(np.median(rolls)) if len(rolls) else float("nan"),
+        "give": float(np.median(gives)) if len(gives) >= FEWEST else float("nan"),
+        "roll": float(np.median(rolls)) if len(rolls) >= FEWEST else float("nan"),
     }
 
 
