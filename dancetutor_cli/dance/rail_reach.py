@@ -20,6 +20,7 @@ from dancetutor_cli.dance.rig.quaternion import UP
 from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond
 from dancetutor_cli.dance.settle import SettledTrajectory, settle, targets_at
 from dancetutor_cli.dance.smoothing import sample_path
+from dancetutor_cli.dance.trajectory.facing import has_hand_on_bar
 from dancetutor_cli.dance.trajectory.posture import Trajectory, bake_at_rest, body_trajectory, situation_of
 from dancetutor_cli.dance.units import Array, Flags
 
@@ -43,6 +44,8 @@ ACROSS = ((0.5, np.radians(60.0), np.radians(172.0)), (1.0, np.radians(60.0), np
 WAY_SLACK = 0.15
 # at most: metres per second of a wrist, radians per second of a hand on its forearm, metres of an arm in another part
 QUICK, QUICK_TURN, DEEP = 3.7, np.radians(1600.0), 0.004
+# metres from an arm on its way to the trunk at least: the final bake, with firmer balance, brings them nearer
+AIR = 0.016
 HAND = 0.10  # metres that a hand reaches beyond its wrist
 
 
@@ -142,7 +145,8 @@ def _settled_part(plan: Plan, body: Trajectory, at: Array, context: Context) -> 
     places, world = world_transforms(skeleton, *poses)
     shoulders = np.stack([places[:, skeleton.index(f"{s}_shoulder")] for s in SIDES], axis=1)
     chest_yaw, yaw = (sample_path(path, body.times, at) for path in (body.chest_yaw, body.yaw))
-    faulty = np.stack([_faulty(skeleton, poses.rotations, places, side) for side in SIDES], axis=1)
+    held = [has_hand_on_bar(tuple(grip for grip in plan.grips if grip.side == side), at) for side in (0, 1)]
+    faulty = np.stack([_faulty(skeleton, poses.rotations, places, side, held[side]) for side in (0, 1)], axis=1)
     faulty |= (_arms_depth(skeleton, places) > DEEP)[:, None]
     return BarTrunk(poses.root, world[:, skeleton.index("vt4")], shoulders, chest_yaw, yaw, faulty)
 
@@ -154,13 +158,13 @@ def _arms_depth(skeleton: Skeleton, places: Array) -> Array:
     return depth(arms[0], arms[1])
 
 
-def _faulty(skeleton: Skeleton, rotations: Array, places: Array, side: str) -> Flags:
+def _faulty(skeleton: Skeleton, rotations: Array, places: Array, side: int, held: Flags) -> Flags:
     """Return the checks (n,) at which an arm moves too quickly, is beyond its limits or in the trunk.
 
-    rotations : (n, j, 4) local; places : (n, j, 3) of joints in the world
+    rotations : (n, j, 4) local; places : (n, j, 3) of joints in the world; held : (n,) whether it holds the rail
     """
-    names = [f"{side}_{name}" for name in ("shoulder", "radiocarpal")]
-    out = arm_in_torso(skeleton, places, side) > DEEP
+    names = [f"{SIDES[side]}_{name}" for name in ("shoulder", "radiocarpal")]
+    out = arm_in_torso(skeleton, places, SIDES[side]) > np.where(held, DEEP, -AIR)
     for name in names:
         out |= beyond(skeleton, name, rotations[:, skeleton.index(name)]) > 0.0
     wrist = skeleton.index(names[1])

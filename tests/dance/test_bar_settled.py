@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from bake_plays import L, R, chart, pad, play, stream
 
-from dancetutor_cli.dance import grips
+from dancetutor_cli.dance import grips, rail_reach
 from dancetutor_cli.dance.bake import bake_plan
 from dancetutor_cli.dance.context import Context
 from dancetutor_cli.dance.footwork.planner import plan_dance
@@ -99,6 +99,20 @@ def test_a_hand_comes_later_or_leaves_sooner_if_its_way_is_wrong(
     trunk.faulty[:] = False
     trunk.faulty[:, 1] = True
     assert part_of(planned, trunk) == GRIP, "the other arm's fault"
+
+
+def test_an_arm_on_its_way_keeps_air_to_the_trunk(
+    planned: tuple[Plan, Context], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The check's body is up to 2 cm off the final one: a forearm 1 cm beside the trunk there was 1 cm in it here."""
+    rest, count = planned[1].skeleton, 5
+    turns = np.tile([1.0, 0.0, 0.0, 0.0], (count, len(rest.names), 1))
+    places = np.tile(rest.rest, (count, 1, 1))
+    held = np.array([True, True, False, False, False])
+    monkeypatch.setattr(rail_reach, "arm_in_torso", lambda *_: np.array([-0.01, 0.006, -0.01, -0.02, 0.006]))
+    for side in (0, 1):
+        found = rail_reach._faulty(rest, turns, places, side, held)
+        np.testing.assert_array_equal(found, [False, True, True, False, True])
 
 
 def test_parts_without_changes_are_not_baked_again(
