@@ -51,11 +51,12 @@ BEAT = (
     0.5  # seconds from pulse to pulse at which the dancer bobs by `groove.bob`, and at slower ones; quicker ones less
 )
 BEATS, STEPS = 0.6, 0.07  # how much hands pump with the beat, and seconds over which they go with a step
-PULSE_SHORTEST = 0.295  # seconds from one pulse of the bob to the next at least
+PULSE_SHORTEST = 0.27  # seconds from one pulse of the bob to the next at least
 FOREARMS_LATE, ARMS_STILL = 0.05, 0.9  # seconds by which forearms follow the bob; part of it that quick steps take
 DEEPER = 1.12  # a pulse is lowered by so much more than raised before it, because straight legs end the way up
-LEVEL, LEVEL_FROM, LEVEL_FULL = 0.28, 5.5, 8.0  # streams of so many steps a second have up to this part less of the bob
+LEVEL, LEVEL_FROM, LEVEL_FULL = 0.28, 7.0, 8.0  # streams of so many steps a second have up to this part less of the bob
 CENTRE = 0.57  # by this part of half the bob the middle of it is lower than the height without it
+USUAL = 9  # gaps between landings whose median is the pace of a stream
 WITHOUT_STEP = 0.45  # a beat without a step is danced this part as deep as one with a step
 NEAR_JUMPS = 0.4  # seconds before and after a jump in which the bob is smaller
 CALM = 0.4  # share of the sway that stops where the dancer comes to rest
@@ -163,7 +164,7 @@ def _bob(plan: Plan, at: Array, times: Array, tempo: Array, context: Context) ->
     quick = np.interp(middles, times, tempo)
     constant = body.height_calm + (body.height_smooth - body.height_calm) * quick
     lost = np.minimum((2.0 * np.pi * constant / every) ** 6, MOST_LOST)
-    pace = np.searchsorted(lands, middles + 0.5) - np.searchsorted(lands, middles - 0.5)  # steps a second
+    pace = _usual_pace(lands, middles)
     far = context.settings.groove.bob * np.minimum(every / BEAT, 1.0) / 2.0
     far *= 1.0 - LEVEL * smooth((pace - LEVEL_FROM) / (LEVEL_FULL - LEVEL_FROM))
     low, high = far * (CENTRE + DEEPER * (1.0 + lost)), far * (CENTRE - 1.0 - lost)
@@ -176,6 +177,17 @@ def _bob(plan: Plan, at: Array, times: Array, tempo: Array, context: Context) ->
     share = (1.0 - np.cos(np.pi * np.clip((times - knots[k]) / (knots[k + 1] - knots[k]), 0.0, 1.0))) / 2.0
     inside = (times > knots[0]) & (times < knots[-1])
     return values[k] + share * (values[k + 1] - values[k]), inside * np.where(k % 2, 1.0 - share, share)
+
+
+def _usual_pace(lands: Array, times: Array) -> Array:
+    """Return the steps a second (n,) around times: of the median of `USUAL` gaps between landings (k,), so that a few
+    quicker steps in a stream do not count.
+    """
+    if len(lands) < 2:
+        return np.zeros(len(times))
+    gaps = np.pad(np.diff(lands), USUAL // 2, mode="edge")
+    usual = np.median(np.lib.stride_tricks.sliding_window_view(gaps, USUAL), axis=1)
+    return np.asarray(1.0 / usual[np.clip(np.searchsorted(lands, times) - 1, 0, len(usual) - 1)])
 
 
 def _pulse_room(at: Array, times: Array) -> Array:

@@ -237,6 +237,14 @@ def test_each_step_has_a_pulse_where_steps_are_as_close_as_pulses_may_be() -> No
     np.testing.assert_allclose(inside, 2.0 + 0.3 * np.arange(24), atol=1e-6)
 
 
+def test_eighths_at_204_beats_a_minute_have_a_pulse_each() -> None:
+    """Sweets wa tomaranai, dance-double Medium: knees gave with every second step only, 2.5 degrees at the median."""
+    plan = planned(stream(60.0 / 204.0, 24))
+    inside = pulses(plan, np.arange(0.0, 12.0, 0.5), groove_module.PULSE_SHORTEST)
+    inside = inside[(inside > 2.0 - 1e-9) & (inside < 2.0 + 23.5 * 60.0 / 204.0)]
+    np.testing.assert_allclose(inside, 2.0 + 60.0 / 204.0 * np.arange(24), atol=1e-6)
+
+
 def test_the_quickest_streams_are_more_level(monkeypatch: pytest.MonkeyPatch) -> None:
     for gap, least, most in ((0.25, 0.999, 1.001), (0.125, 0.70, 0.74)):
         steps = planned(stream(gap, 48))
@@ -246,6 +254,16 @@ def test_the_quickest_streams_are_more_level(monkeypatch: pytest.MonkeyPatch) ->
         full = bob_of(steps, heard(), STILL + 1.0)
         inside = (TIMES > 3.0) & (TIMES < 7.0)
         assert least < np.ptp(bob[inside]) / np.ptp(full[inside]) < most
+
+
+def test_a_few_quicker_steps_make_a_stream_no_more_level(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sixteenths at 97 beats a minute with doubled ones were danced as at 8 steps a second."""
+    gaps = [0.155] * 7 + [0.0775] * 2
+    lands = np.concatenate(([2.0], 2.0 + np.cumsum(gaps * 5 + gaps[:5])))
+    steps = planned([(float(t), {(0, 3)[k % 2]: (L, R)[k % 2]}) for k, t in enumerate(lands)])
+    bob = bob_of(steps, heard(), STILL + 1.0)
+    monkeypatch.setattr(groove_module, "LEVEL", 0.0)
+    np.testing.assert_array_equal(bob, bob_of(steps, heard(), STILL + 1.0))
 
 
 def test_the_trunk_leans_more_in_one_phrase_than_in_the_next() -> None:
