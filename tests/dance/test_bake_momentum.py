@@ -127,6 +127,17 @@ def test_she_does_not_fall_so_quickly_that_her_weight_leaves_her_feet() -> None:
     assert balances[0] > balances[1] + 0.5
 
 
+def test_the_trunk_answers_wide_steps_by_leaning_far() -> None:
+    """Crossing to and fro, legs have much momentum; limited at 14 degrees, the trunk left more of it unanswered."""
+    settings = default_settings()
+    dance = play([(1.0 + 0.2 * k, {(0, 2, 3, 1, 0, 3)[k % 6]: (L, R)[k % 2]}) for k in range(60)])
+    found = []
+    for lean in (settings.arms.lean, 14.0):
+        motion = bake(chart().timing, dance, pad(), settings=replace(settings, arms=replace(settings.arms, lean=lean)))
+        found.append(report(motion)["residual moment, 99th percentile"].value)
+    assert found[0] < 0.96 * found[1]
+
+
 def test_a_few_landings_have_no_median(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nine counted landings in 40 s at the bar, of which five were between two pulses: a give of 0.2 degrees."""
     motion = bake(
