@@ -121,9 +121,10 @@ class _Passage:
         return ", ".join(some[0].text_of(len(some), len({one.text for one in some}) == 1) for some in several)
 
     def reason(self) -> str:
-        """Return the reason of the moves if they all have the same name and reason, else ""."""
-        found = {move.phrase.why for move in self.moves}
-        return found.pop() if len(found) == 1 and len(self.kinds) == 1 else ""
+        """Return the one reason of the kind of move that is named last, if no other kind has a reason, else ""."""
+        *others, last = self.kinds.values()
+        found = {phrase.why for phrase in last}
+        return found.pop() if len(found) == 1 and not any(phrase.why for some in others for phrase in some) else ""
 
     def tag(self, further: int) -> str:
         """Return the tag of the first move, for the narrow place beside the notes, whose markers show the foot.

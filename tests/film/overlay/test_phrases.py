@@ -21,6 +21,7 @@ from dancetutor_cli.feet.play import Play
 from dancetutor_cli.feet.solved import Solved
 from dancetutor_cli.feet.solver.techniques import half_turned
 from dancetutor_cli.film.choices import Ahead
+from dancetutor_cli.film.overlay import callouts
 from dancetutor_cli.film.overlay.announce import _foot_colour
 from dancetutor_cli.film.overlay.callouts import CalloutSubject, CallStyle, callouts_of
 from dancetutor_cli.film.overlay.sprites import callout_words
@@ -124,6 +125,22 @@ def test_calls_say_which_foot_crosses_and_whether_in_front_as_the_feet_do(danced
         assert said.tag == f"cross {way}"
         ways.add((foot, way))
     assert len(found) >= 4 and ways == {(foot, way) for foot in (0, 1) for way in ("in front", "behind")}
+
+
+def test_a_call_of_two_kinds_of_moves_says_why_for_the_last_one() -> None:
+    """A bracket and a crossover over a hold in one call had no reason at all."""
+    toe = Phrase("bracket", "right foot: toe on up", "toe on up")
+    cross = Phrase("crossover", "left foot crosses behind", "cross behind", "right foot is on the hold")
+    for phrases, reason in (((toe, cross), cross.why), ((cross, toe), ""), ((cross,), cross.why), ((toe,), "")):
+        passage = callouts._Passage(0, 0)
+        for tick, phrase in enumerate(phrases):
+            passage.add(callouts._Move(tick, tick, phrase))
+        assert passage.text().endswith(phrases[-1].text) and passage.reason() == reason
+    turned = cross._replace(move="half turn")
+    passage = callouts._Passage(0, 0)
+    for phrase in (cross, turned):
+        passage.add(callouts._Move(0, 0, phrase))
+    assert passage.reason() == "", "it would be taken for the reason of both"
 
 
 def test_a_call_says_why(danced: Danced) -> None:
