@@ -216,6 +216,7 @@ class GrooveSettings:
     hands_full: Seconds
     deeper: Ratio
     bob: Metres
+    stream_late: Seconds
     heels: Degrees
     leisure: Ratio
     leisure_from: Seconds

@@ -46,6 +46,7 @@ class StepSettings:
     lift_pitch: Degrees
     swing_pitch: Degrees
     land_pitch: Degrees
+    land_slow: Ratio
     land_hasty: Degrees
     stream_pitch: Degrees
     stream_pitch_hasty: Degrees

@@ -54,11 +54,12 @@ BEATS, STEPS = 0.6, 0.07  # how much hands pump with the beat, and seconds over 
 PULSE_SHORTEST = 0.27  # seconds from one pulse of the bob to the next at least
 FOREARMS_LATE, ARMS_STILL = 0.05, 0.9  # seconds by which forearms follow the bob; part of it that quick steps take
 DEEPER = 1.12  # a pulse is lowered by so much more than raised before it, because straight legs end the way up
-LEVEL, LEVEL_FROM, LEVEL_FULL = 0.28, 7.0, 8.0  # streams of so many steps a second have up to this part less of the bob
+LEVEL, LEVEL_FROM, LEVEL_FULL = 0.298, 7.0, 8.0  # part less of the bob in streams, between so many steps a second
 CENTRE = 0.57  # by this part of half the bob the middle of it is lower than the height without it
 USUAL = 9  # gaps between landings whose median is the pace of a stream
 WITHOUT_STEP = 0.45  # a beat without a step is danced this part as deep as one with a step
 NEAR_JUMPS = 0.4  # seconds before and after a jump in which the bob is smaller
+SLOW_LESS = 0.55  # the bob is smaller by this part in slow steps, where knees give after landings, too
 CALM = 0.4  # share of the sway that stops where the dancer comes to rest
 MOSTLY = 0.6  # share of the time, from `groove.mostly` (0) to always (1), in which the trunk moves as in jacks
 
@@ -127,7 +128,7 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
     late = np.interp(times - settings.layers.beat_late, times, beat)
     deeper = np.maximum(numbers.deeper * jacks, numbers.leisure * np.maximum(easy, occupation.waits))
     sink = (1.0 + deeper) * settings.layers.bounce * late
-    among = (1.0 - slow / 2.0) * (1.0 - np.clip(occupation.busy + occupation.waits, 0.0, 1.0))
+    among = (1.0 - SLOW_LESS * slow) * (1.0 - np.clip(occupation.busy + occupation.waits, 0.0, 1.0))
     among *= _grounded(plan, times, NEAR_JUMPS)
     lows = pulses(plan, heard_beats(context.beats, settings.layers.beat_shortest), PULSE_SHORTEST)
     bob, high = _bob(plan, lows, times, occupation.tempo, context)
@@ -154,10 +155,10 @@ def _bob(plan: Plan, at: Array, times: Array, tempo: Array, context: Context) ->
     seconds apart. T is the time constant of `height.height_path`. So the movement is enlarged by the inverse, and the
     knees bend no more for that on average. tempo : (n,) as in `height`
     """
-    body, late = context.settings.body, context.settings.layers.beat_late
+    body, slow, stream = context.settings.body, context.settings.layers.beat_late, context.settings.groove.stream_late
     if len(at) < 2:
         return np.zeros(len(times)), np.zeros(len(times))
-    gaps = np.diff(at)
+    gaps, late = np.diff(at), slow + (stream - slow) * np.interp(at, times, tempo)
     lows = at + np.minimum(late, LOWEST * np.append(gaps, np.inf))
     every = np.diff(lows)
     lands, middles = step_landings(plan), (lows[1:] + lows[:-1]) / 2

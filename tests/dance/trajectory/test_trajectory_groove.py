@@ -245,6 +245,15 @@ def test_eighths_at_204_beats_a_minute_have_a_pulse_each() -> None:
     np.testing.assert_allclose(inside, 2.0 + 60.0 / 204.0 * np.arange(24), atol=1e-6)
 
 
+def test_she_is_lowest_later_in_streams_than_at_leisure() -> None:
+    plan, at = planned(stream(0.5)), heard()
+    for tempo, late in ((0.0, SETTINGS.layers.beat_late), (1.0, SETTINGS.groove.stream_late)):
+        bob = bob_of(plan, at, STILL + tempo)
+        around = (TIMES > 4.8) & (TIMES < 5.3)
+        assert TIMES[around][bob[around].argmax()] == pytest.approx(5.0 + late, abs=0.005)
+    assert SETTINGS.layers.beat_late < SETTINGS.groove.stream_late
+
+
 def test_the_quickest_streams_are_more_level(monkeypatch: pytest.MonkeyPatch) -> None:
     for gap, least, most in ((0.25, 0.999, 1.001), (0.125, 0.70, 0.74)):
         steps = planned(stream(gap, 48))
