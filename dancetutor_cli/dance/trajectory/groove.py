@@ -59,7 +59,7 @@ CENTRE = 0.57  # by this part of half the bob the middle of it is lower than the
 USUAL = 9  # gaps between landings whose median is the pace of a stream
 WITHOUT_STEP = 0.45  # a beat without a step is danced this part as deep as one with a step
 NEAR_JUMPS = 0.4  # seconds before and after a jump in which the bob is smaller
-SLOW_LESS = 0.55  # the bob is smaller by this part in slow steps, where knees give after landings, too
+SLOW_LESS = 0.43  # the bob is smaller by this part in slow steps, where knees give after landings, too
 CALM = 0.4  # share of the sway that stops where the dancer comes to rest
 MOSTLY = 0.6  # share of the time, from `groove.mostly` (0) to always (1), in which the trunk moves as in jacks
 
@@ -158,7 +158,7 @@ def _bob(plan: Plan, at: Array, times: Array, tempo: Array, context: Context) ->
     body, slow, stream = context.settings.body, context.settings.layers.beat_late, context.settings.groove.stream_late
     if len(at) < 2:
         return np.zeros(len(times)), np.zeros(len(times))
-    gaps, late = np.diff(at), slow + (stream - slow) * np.interp(at, times, tempo)
+    gaps, late = np.diff(at), slow + (stream - slow) * np.minimum(2.0 * np.interp(at, times, tempo), 1.0)
     lows = at + np.minimum(late, LOWEST * np.append(gaps, np.inf))
     every = np.diff(lows)
     lands, middles = step_landings(plan), (lows[1:] + lows[:-1]) / 2
