@@ -80,13 +80,13 @@ class Heel:
     rest: float
 
 
-def heel_of_step(step: StepSettings, hurry: float = 0.0, haste: float = 0.0) -> Heel:
-    """Return the heel of a step; hurry, haste : 0 to 1 as in `Row`.
+def heel_of_step(step: StepSettings, leisure: float = 1.0, haste: float = 0.0) -> Heel:
+    """Return the heel of a step; leisure, haste : 0 to 1 as in `Row`.
 
     At leisure it lands lower, because the body sinks as the heel comes down. With haste it rises less, because rocking
     throws the body.
     """
-    land = step.land_pitch * (1.0 - (1.0 - hurry) ** 2 * (1.0 - step.land_slow))
+    land = step.land_pitch * (1.0 - leisure**2 * (1.0 - step.land_slow))
     land += haste * (step.land_hasty - step.land_pitch)
     swing = step.swing_flat + haste * (step.swing_flat_hasty - step.swing_flat)
     rest = step.stream_pitch + haste * (step.stream_pitch_hasty - step.stream_pitch)

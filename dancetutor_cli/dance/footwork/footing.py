@@ -71,6 +71,14 @@ class Row:
         step = self.context.settings.step
         return float(np.clip((step.fast - self.duration) / (step.fast - step.hasty), 0.0, 1.0))
 
+    @property
+    def leisure(self) -> float:
+        """How much time there is both before the row and after it, from a fast move to the longest one, 0 to 1."""
+        step, second, limb = self.context.settings.step, self.play.rows.second, self.play.limb
+        later = (float(second[j]) for j in range(self.index + 1, len(second)) if (limb[j] >= 0).any())
+        time = min(self.duration, next(later, np.inf) - self.time)
+        return float(np.clip((time - step.fast) / max(step.longest - step.fast, 1e-9), 0.0, 1.0))
+
     def next_place(self, side: int) -> Array | None:
         """Return the place (2,) of the next step of a foot, if it comes soon."""
         second, limb = self.play.rows.second, self.play.limb

@@ -135,7 +135,7 @@ def step(row: Row, side: int, footing: Footing) -> Proposal:
         if leapt is not None:
             return replace(leapt, leaves=leapt.footing.feet[side].moves[-1].lift)
         footing = _give_way(footing, foot, (target, yaw), (lift, time))
-    heel = heel_of_step(numbers, row.hurry, row.haste)
+    heel = heel_of_step(numbers, row.leisure, row.haste)
     if kind is Jump:  # legs that push off need it
         heel = replace(heel, flat=(footing.settings.jump.lift_flat, footing.settings.jump.swing_flat))
     pitches = heel_up(numbers, row.cut, heel, columns)
