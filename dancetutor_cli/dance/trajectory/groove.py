@@ -54,12 +54,13 @@ BEATS, STEPS = 0.6, 0.07  # how much hands pump with the beat, and seconds over 
 PULSE_SHORTEST = 0.27  # seconds from one pulse of the bob to the next at least
 FOREARMS_LATE, ARMS_STILL = 0.05, 0.9  # seconds by which forearms follow the bob; part of it that quick steps take
 DEEPER = 1.12  # a pulse is lowered by so much more than raised before it, because straight legs end the way up
-LEVEL, LEVEL_FROM, LEVEL_FULL = 0.298, 7.0, 8.0  # part less of the bob in streams, between so many steps a second
+LEVEL = 0.298  # by this part the bob is smaller in quick streams,
+LEVEL_FROM, LEVEL_FULL = 7.0, 8.0  # from so many steps a second on, and fully at so many
 CENTRE = 0.57  # by this part of half the bob the middle of it is lower than the height without it
 USUAL = 9  # gaps between landings whose median is the pace of a stream
 WITHOUT_STEP = 0.45  # a beat without a step is danced this part as deep as one with a step
 NEAR_JUMPS = 0.4  # seconds before and after a jump in which the bob is smaller
-SLOW_LESS = 0.43  # the bob is smaller by this part in slow steps, where knees give after landings, too
+SLOW_LESS = 0.43  # by this part the bob is smaller in slow steps, where knees also give after landings
 CALM = 0.4  # share of the sway that stops where the dancer comes to rest
 MOSTLY = 0.6  # share of the time, from `groove.mostly` (0) to always (1), in which the trunk moves as in jacks
 
@@ -153,7 +154,8 @@ def _bob(plan: Plan, at: Array, times: Array, tempo: Array, context: Context) ->
 
     Smoothing the height leaves 1 / (1 + (2 pi T / every)^6) of a movement that comes and goes with pulses `every`
     seconds apart. T is the time constant of `height.height_path`. So the movement is enlarged by the inverse, and the
-    knees bend no more for that on average. tempo : (n,) as in `height`
+    knees bend no more for that on average. She is lowest `layers.beat_late` after a pulse, in streams, from half of the
+    tempo on, `groove.stream_late`. tempo : (n,) as in `height`
     """
     body, slow, stream = context.settings.body, context.settings.layers.beat_late, context.settings.groove.stream_late
     if len(at) < 2:

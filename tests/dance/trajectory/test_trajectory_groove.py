@@ -247,11 +247,12 @@ def test_eighths_at_204_beats_a_minute_have_a_pulse_each() -> None:
 
 def test_she_is_lowest_later_in_streams_than_at_leisure() -> None:
     plan, at = planned(stream(0.5)), heard()
-    for tempo, late in ((0.0, SETTINGS.layers.beat_late), (1.0, SETTINGS.groove.stream_late)):
+    slow, stream_late = SETTINGS.layers.beat_late, SETTINGS.groove.stream_late
+    for tempo, late in ((0.0, slow), (0.5, stream_late), (1.0, stream_late)):
         bob = bob_of(plan, at, STILL + tempo)
         around = (TIMES > 4.8) & (TIMES < 5.3)
         assert TIMES[around][bob[around].argmax()] == pytest.approx(5.0 + late, abs=0.005)
-    assert SETTINGS.layers.beat_late < SETTINGS.groove.stream_late
+    assert slow < stream_late
 
 
 def test_the_quickest_streams_are_more_level(monkeypatch: pytest.MonkeyPatch) -> None:
