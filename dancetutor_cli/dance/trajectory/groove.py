@@ -154,8 +154,8 @@ def _bob(plan: Plan, at: Array, times: Array, tempo: Array, context: Context) ->
 
     Smoothing the height leaves 1 / (1 + (2 pi T / every)^6) of a movement that comes and goes with pulses `every`
     seconds apart. T is the time constant of `height.height_path`. So the movement is enlarged by the inverse, and the
-    knees bend no more for that on average. She is lowest `layers.beat_late` after a pulse, in streams, from half of the
-    tempo on, `groove.stream_late`. tempo : (n,) as in `height`
+    knees bend no more for that on average. She is lowest `beat_late` after a pulse, in streams, from half of the tempo
+    on, `stream_late`. tempo : (n,) as in `height`
     """
     body, slow, stream = context.settings.body, context.settings.layers.beat_late, context.settings.groove.stream_late
     if len(at) < 2:
