@@ -109,6 +109,16 @@ def test_there_is_none_in_streams_with_busy_hands_or_in_waits(other: dict[str, f
     assert not groove(stream(0.125, 40), **other).sway.any()
 
 
+@pytest.mark.parametrize(("beat", "every"), [(0.4, 0.4), (0.395, 0.79), (0.375, 0.75)])
+def test_above_150_beats_a_minute_each_second_beat_has_a_pulse(beat: float, every: float) -> None:
+    """So the bounce at 160 is as large as at 80, where it would otherwise be smoothed away."""
+    beats = replace(context(), beats=tuple(2.0 + beat * np.arange(-4, 24)))
+    lows = groove_of(planned(stream(2.0 * beat, 10)), TIMES, Occupation(STILL, STILL, STILL), beats).pulses
+    inside = lows[(lows > 2.0) & (lows < 2.0 + 18.0 * beat)]
+    assert len(inside) >= 8
+    np.testing.assert_allclose(np.diff(inside), every, atol=1e-6)
+
+
 def test_in_streams_knees_are_asked_for_the_beat_but_not_near_jumps_or_by_busy_hands() -> None:
     """Every half second, not with each of the steps; enlarged by what smoothing takes away again."""
     bob = groove(stream(0.125, 40), tempo=1.0).bob
