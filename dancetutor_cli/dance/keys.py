@@ -115,6 +115,8 @@ Mask = NDArray[np.bool_]
 FREE = 0.002  # metres; tolerance between frames for a part of the body that touches nothing
 GRIPPING = 0.0003  # metres; tolerance for a hand on the bar
 WAVING = 0.03  # metres; tolerance for hair, which moves fast
+SMALL, SPARSE = 0.1, 4  # metres; joints with a shorter reach (fingers, eyes, jaw) have keys at every fourth frame
+SMALL_TOLERANCE = 0.0002  # metres; and where they would be farther off
 TOUCH = 0.06  # seconds around the touch of a palm in which its arm keeps all keys: contacts are measured there
 _ANKLES, _WRISTS, _HAIR = ("l_talocrural", "r_talocrural"), ("l_radiocarpal", "r_radiocarpal"), "braid"
 
@@ -136,12 +138,23 @@ def key_times_of(motion: Motion) -> tuple[KeyTimes, ...]:
     feet, hands, hair, others = joint_groups(motion.skeleton)
     held, gripped = _touches(motion)
     free = np.full(len(every), FREE)
+    arms, fingers, others, face = *_by_reach(hands, motion.skeleton), *_by_reach(others, motion.skeleton)
     out = [KeyTimes(feet, every)]
-    for joints, least in ((hands, np.where(gripped, GRIPPING, free)), (hair, free + (WAVING - FREE)), (others, free)):
+    for joints, least in ((arms, np.where(gripped, GRIPPING, free)), (hair, free + (WAVING - FREE)), (others, free)):
         if joints:
             wanted = _off(motion, joints, regular) > least
-            out.append(KeyTimes(joints, regular | wanted | (held if joints is hands else False)))
+            out.append(KeyTimes(joints, regular | wanted | (held if joints is arms else False)))
+    sparse = np.zeros(len(every), dtype=bool)
+    sparse[[*np.flatnonzero(regular)[::SPARSE], -1]] = True
+    small = (joints for joints in (fingers, face) if joints)
+    out += [KeyTimes(joints, sparse | (_off(motion, joints, sparse) > SMALL_TOLERANCE)) for joints in small]
     return tuple(out)
+
+
+def _by_reach(joints: tuple[int, ...], skeleton: Skeleton) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Return those of the joints that reach far, and the small ones."""
+    reach = reaches(skeleton)
+    return tuple(j for j in joints if reach[j] >= SMALL), tuple(j for j in joints if reach[j] < SMALL)
 
 
 def joint_groups(skeleton: Skeleton) -> tuple[tuple[int, ...], ...]:

@@ -12,6 +12,7 @@ from glb_channels import channels_of
 from dancetutor_cli.character.characters import load_dancer
 from dancetutor_cli.chart.reader import load
 from dancetutor_cli.dance.bake import bake
+from dancetutor_cli.dance.keys import reaches
 from dancetutor_cli.dance.motion import Motion
 from dancetutor_cli.dance.performance import as_heard
 from dancetutor_cli.dance.quality.report import report
@@ -132,6 +133,8 @@ def test_every_frame_is_exact(written: tuple[Path, Motion]) -> None:
     frame = np.abs(motion.times * motion.fps - np.rint(motion.times * motion.fps)) < 1e-6
     right, shown = (world_transforms(m.skeleton, m.rotations[frame], m.root[frame])[0] for m in (motion, seen))
     assert np.linalg.norm(right - shown, axis=-1).max() < 3e-4
+    turned = quat.angle_between(motion.rotations[frame], seen.rotations[frame])  # of fingers and eyes, too
+    assert (turned * reaches(motion.skeleton)).max() < 3e-4
 
 
 def test_each_joint_has_no_more_keys_than_it_needs(written: tuple[Path, Motion]) -> None:
@@ -141,6 +144,7 @@ def test_each_joint_has_no_more_keys_than_it_needs(written: tuple[Path, Motion])
     assert keys["l_knee"] == keys["r_talocrural"] == len(motion.times)
     frames = np.ptp(motion.times) * motion.fps
     assert keys["l_eyelid_joint"] < 0.3 * frames  # a blink now and then
+    assert keys["l_metacarpophalangeal_3"] < 0.35 * frames  # fingers curl slowly
     assert keys["skullbase"] < 1.2 * frames
     if motion.bar is None:
         assert keys["l_elbow"] < 1.2 * frames
