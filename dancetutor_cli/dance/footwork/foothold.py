@@ -234,7 +234,7 @@ def _draw(*seed: int) -> float:
 
 
 def heel_up(step: StepSettings, cut: float, heel: Heel, columns: list[int]) -> Pitches:
-    """Return the pitches of a swing, radians: as toes leave, at most, landing, afterwards; fast steps stay flat."""
+    """Return the pitches of a swing, radians: as toes leave, at most, landing, afterwards; only streams stay flat."""
     lift, most, land = heel.degrees
     rest = heel.rest * cut
     if len(columns) > 1:
@@ -242,7 +242,7 @@ def heel_up(step: StepSettings, cut: float, heel: Heel, columns: list[int]) -> P
     out = np.radians(
         [
             lift * (1.0 - heel.flat[0] * cut),
-            most * (1.0 - heel.flat[1] * cut),
+            most * (1.0 - heel.flat[1] * cut**2),
             land + step.land_stream * rest,
             rest,
         ]

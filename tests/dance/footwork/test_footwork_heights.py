@@ -66,6 +66,16 @@ def test_a_step_at_leisure_lands_with_its_heel_lower() -> None:
         assert 0.97 * step.land_pitch < land(*gaps).min() and land(*gaps).max() < 1.05 * step.land_pitch
 
 
+def test_heels_swing_as_at_leisure_with_a_third_of_a_second_and_stay_down_in_streams() -> None:
+    step = default_settings().step
+    ups = {}
+    for gap in (0.3, 0.2):
+        moves = [m for track in plan_of(chart().timing, play(taps(gap)), pad()).feet for m in track.moves]
+        ups[gap] = np.degrees([m.pitches[1] for m in moves if isinstance(m, Step)][4:-2])
+    assert ups[0.3].min() > 0.9 * step.swing_pitch
+    assert len(ups[0.2]) > 12 and ups[0.2].max() < 0.4 * step.swing_pitch
+
+
 def test_steps_home_are_lower_than_those_to_notes() -> None:
     rises = ankles(WAIT, Sidestep)
     assert len(rises) >= 2 and rises.min() > 2.0 and rises.max() < 5.0
