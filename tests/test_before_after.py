@@ -151,7 +151,7 @@ def test_figures_are_reported_at_each_of_the_times(points: ModuleType, danced: M
 
 def test_every_point_has_sheets_that_can_be_drawn(points: ModuleType, sheets: ModuleType) -> None:
     made = points.sheets()
-    assert len({one.point for one in made}) == 12
+    assert len({one.point for one in made}) == 13
     assert len({one.name for one in made}) == len(made) and all(one.shows for one in made)
     also = {"motion": {f.name for f in fields(sheets.Moments)}, "film": set(points.HOW), "character": set()}
     for one in made:
