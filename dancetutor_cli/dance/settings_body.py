@@ -53,6 +53,8 @@ class BodySettings:
     land_least: Seconds
     land_full: Seconds
     farthest: Metres
+    farther: Metres
+    farther_full: Seconds
     heel_carries: Degrees
 
 

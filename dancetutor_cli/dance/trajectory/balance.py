@@ -143,6 +143,7 @@ class Pendulum:
     times : (n,) seconds; slowness : (n,) 1 / omega^2 = y / (y'' + g), seconds squared; ignored in flight
     smooth_slowness : (n,) slowness without trembling above 10 Hz
     offset : (n, 2) from the pelvis to the centre of mass, as far as known
+    farthest : (n,) metres, largest distance of the pelvis from an ankle in the direction of the other one
     turning : (n, 2) as from `momentum.rotation_zmp_offset`, as far as known
     rail : the bar, while hands hold it
     """
@@ -151,6 +152,7 @@ class Pendulum:
     slowness: Array
     smooth_slowness: Array
     offset: Array
+    farthest: Array
     turning: Array
     rail: Rail | None = None
 
@@ -221,7 +223,7 @@ def balanced_path(
     feet = (_nearest(feet[0], times, nodes), _nearest(feet[1], times, nodes))
     slowness, seen = (np.interp(nodes, times, x) for x in (pendulum.slowness, pendulum.smooth_slowness))
     offset = sample_path(pendulum.offset, times, nodes)
-    room = _room(feet, ball_to_ankle(dancer_skeleton()), body.farthest)
+    room = _room(feet, np.interp(nodes, times, pendulum.farthest), body.farthest)
     feet = _carrying(feet, rate)
     support = support_of(feet, float(np.radians(body.heel_carries)))
     rail = None if pendulum.rail is None else pendulum.rail.at(times, nodes)
@@ -272,10 +274,17 @@ class _PathGoals:
     farthest: Array
 
 
-def _room(feet: Feet, back: float, farthest: float) -> tuple[Array, Array]:
-    """Return the lowest and highest place (n, 2) of the pelvis that both legs reach; back : ball to ankle, metres."""
+def _room(feet: Feet, farthest: Array, along_axes: float) -> tuple[Array, Array]:
+    """Return the lowest and highest place (n, 2) of the pelvis that both legs reach.
+
+    farthest : (n,) as of `Pendulum`; along_axes : the least of it along each axis, metres
+    """
+    back = ball_to_ankle(dancer_skeleton())
     ankles = [f.ball[:, [0, 2]] - back * np.column_stack((np.sin(f.yaw), np.cos(f.yaw))) for f in feet]
-    return np.maximum(*ankles) - farthest, np.minimum(*ankles) + farthest
+    apart = np.abs(ankles[0] - ankles[1])
+    along = apart.max(axis=1) / np.maximum(np.linalg.norm(apart, axis=1), 0.05)
+    most = np.maximum(farthest * along, along_axes)[:, None]
+    return np.maximum(*ankles) - most, np.minimum(*ankles) + most
 
 
 def _nearest(foot: FootPath, times: Array, nodes: Array) -> FootPath:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -267,6 +267,17 @@ def stance(plan: Plan, times: Array, context: Context) -> Array:
     rate = 1.0 / float(times[1] - times[0])
     over = smooth_path(bears[:, None], np.ones(len(times)), rate, numbers.stance_time)[:, 0]
     return numbers.stance * over * leisure(plan, times, numbers) * _grounded(plan, times, 3.0 * numbers.ease)
+
+
+def pelvis_reach(plan: Plan, times: Array, context: Context) -> Array:
+    """Return how far (n,) the pelvis may be from an ankle along each axis, metres, at even times: farther at leisure,
+    where the free leg can be straight, so that hips come over the foot that stands; not near jumps, nor at the bar.
+    """
+    body, numbers = context.settings.body, context.settings.groove
+    if context.bar is not None:
+        return np.full(len(times), body.farthest)
+    easy = leisure(plan, times, replace(numbers, leisure_full=body.farther_full))
+    return body.farthest + body.farther * easy * _grounded(plan, times, 3.0 * numbers.ease)
 
 
 def _to(move: Move) -> bool:

@@ -27,7 +27,7 @@ from dancetutor_cli.dance.trajectory.facing import (
     pelvis_yaw,
     reaching,
 )
-from dancetutor_cli.dance.trajectory.groove import Groove, Occupation, groove_of, stance
+from dancetutor_cli.dance.trajectory.groove import Groove, Occupation, groove_of, pelvis_reach, stance
 from dancetutor_cli.dance.trajectory.height import (
     Height,
     HeightGoals,
@@ -130,6 +130,7 @@ class Situation:
     reaching : (n, 2) as of `facing.reaching`; gait : the movements of her walks, None without a walk
     leaning : (n,) as of `facing.leaning_share`; across : (n,) as of `facing.crossing_share`
     shift : (n,) metres that her weight is towards the left foot, in waits and at leisure
+    farthest : (n,) metres, as of `balance.Pendulum`
     give : (n,) metres, as of `height.landing_give`
     """
 
@@ -143,6 +144,7 @@ class Situation:
     waiting: WaitMotion
     groove: Groove
     shift: Array
+    farthest: Array
     give: Array
 
     @property
@@ -169,6 +171,7 @@ def situation_of(plan: Plan, times: Array, context: Context) -> Situation:
     return Situation(
         times, tempo, jump_crouch(plan, times, settings.jump), palms, gait, leaning, across, waiting, groove,
         shift=waiting.shift + (1.0 - waiting.share) * stance(plan, times, context),
+        farthest=pelvis_reach(plan, times, context),
         give=landing_give(plan, times, groove.pulses, settings.body),
     )  # fmt: skip
 
@@ -301,7 +304,7 @@ def _course(
     if baked is not None and rough.keep:
         softened = tuple(what for what in baked.softened if what == BALANCE)
         return Course(times, baked.mass, rough.above, rough.hips, yaw), softened
-    pendulum = _pendulum(times, rough)
+    pendulum = _pendulum(now, rough)
     if now.gait is not None:  # who walks has legs that swing slowly, and her weight on the edges of her soles
         pendulum = replace(pendulum, turning=(1.0 - now.walks)[:, None] * pendulum.turning)
     if baked is not None:  # heels that rise to spare their ankles carry nothing; palms do, on their way already
@@ -315,18 +318,18 @@ def _course(
     return Course(times, mass, rough.above, rough.hips, yaw), (BALANCE,) if swept else ()
 
 
-def _pendulum(times: Array, rough: RoughBake) -> Pendulum:
+def _pendulum(now: Situation, rough: RoughBake) -> Pendulum:
     """Return the body's inverted pendulum; it stands still until the height of the centre of mass is known."""
-    offset = rough.above[:, [0, 2]]
+    times, offset = now.times, rough.above[:, [0, 2]]
     if rough.trajectory is None:
         still = np.full(len(times), STANDING_HEIGHT / GRAVITY)
-        return Pendulum(times, still, still, offset, rough.turning)
+        return Pendulum(times, still, still, offset, now.farthest, rough.turning)
     height, step = rough.trajectory.mass_height, 1.0 / 60.0
     y = height.at(times)
     acceleration = (height.at(times + step) - 2 * y + height.at(times - step)) / step**2
     rate = 1.0 / float(times[1] - times[0])
     smooth_slowness = _slowness(low_pass(y, rate), low_pass(acceleration, rate), LEAST_SEEN)
-    return Pendulum(times, _slowness(y, acceleration, LEAST_FALL), smooth_slowness, offset, rough.turning)
+    return Pendulum(times, _slowness(y, acceleration, LEAST_FALL), smooth_slowness, offset, now.farthest, rough.turning)
 
 
 def _slowness(y: Array, acceleration: Array, least: float) -> Array:
