@@ -18,6 +18,7 @@ from dancetutor_cli.dance.settings_arms import FingerSettings
 from dancetutor_cli.dance.settings_body import GlanceSettings
 from dancetutor_cli.dance.smoothing import sample_path, smooth
 from dancetutor_cli.dance.trajectory.facing import screen_yaw
+from dancetutor_cli.dance.trajectory.groove import head_carriage
 from dancetutor_cli.dance.trajectory.height import tempo_factor
 from dancetutor_cli.dance.trajectory.posture import Trajectory
 from dancetutor_cli.dance.units import Array, Poses
@@ -81,10 +82,11 @@ def glances_at(plan: Plan, body: Trajectory, times: Array, context: Context) -> 
     """Return the glances at `times` (f,), seconds. Mirror images of a plan have mirror images of its glances.
 
     Their times and directions are random. A glance needs notes at least `numbers.quick` apart; it is smaller if they
-    are less than `numbers.slow` apart.
+    are less than `numbers.slow` apart. At any speed the head is carried another way in each phrase of the music,
+    with eyes on the screen.
     """
     numbers = context.settings.glance
-    out = Glances(*(np.zeros(len(times)) for _ in range(4)))
+    out = _carried(plan, times, context)
     notes, busy = _notes(plan), [(walk.start, walk.end) for walk in plan.walks]
     busy += [(press.start - press.lead, press.end + numbers.hand) for press in plan.presses]
     busy += [(start - numbers.jump, end + numbers.jump) for start, end in plan.flights]
@@ -108,6 +110,14 @@ def glances_at(plan: Plan, body: Trajectory, times: Array, context: Context) -> 
         out.eyes[near] += eyes * _there(t + numbers.eyes_ahead, start, end, numbers.turn / 2)
     room = _room(body, times, context)
     return Glances(room * out.yaw, room * out.pitch, room * out.tilt, room * out.eyes)
+
+
+def _carried(plan: Plan, times: Array, context: Context) -> Glances:
+    """Return how the head is carried at `times` (f,) from phrase to phrase; the eyes stay where they are."""
+    numbers = context.settings.glance
+    far = np.radians([numbers.carried_yaw, numbers.carried_pitch, numbers.carried_tilt])
+    yaw, pitch, tilt = (head_carriage(plan, times, context) * far).T
+    return Glances(yaw, pitch, tilt, -yaw)
 
 
 def _notes(plan: Plan) -> Array:

@@ -104,7 +104,7 @@ class LookSettings:
 
 @dataclass(frozen=True, slots=True)
 class GlanceSettings:
-    """Glances away from the screen where there is time."""
+    """Glances away from the screen where there is time, and how the head is carried."""
 
     every: Seconds
     lasts: Seconds
@@ -121,6 +121,9 @@ class GlanceSettings:
     jump: Seconds
     neck_room: Degrees
     eyes_room: Degrees
+    carried_yaw: Degrees
+    carried_pitch: Degrees
+    carried_tilt: Degrees
 
 
 @dataclass(frozen=True, slots=True)

@@ -38,10 +38,10 @@ from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_arms import ArmSettings
 from dancetutor_cli.dance.smoothing import Controller, follow, sample_path, smooth, smooth_path, soft_excess
 from dancetutor_cli.dance.trajectory.facing import crossing_share
-from dancetutor_cli.dance.trajectory.groove import leisure
 from dancetutor_cli.dance.trajectory.height import jump_swing, tempo_factor
 from dancetutor_cli.dance.trajectory.legs import ankle_of
 from dancetutor_cli.dance.trajectory.posture import Trajectory
+from dancetutor_cli.dance.trajectory.stance import leisure
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.dance.waits import waiting_at
 

@@ -275,15 +275,13 @@ class _PathGoals:
 
 
 def _room(feet: Feet, farthest: Array, along_axes: float) -> tuple[Array, Array]:
-    """Return the lowest and highest place (n, 2) of the pelvis that both legs reach.
-
-    farthest : (n,) as of `Pendulum`; along_axes : the least of it along each axis, metres
+    """Return the lowest and highest place (n, 2) of the pelvis that both legs reach. farthest : as of `Pendulum`;
+    along_axes : metres, the least of it along each axis
     """
     back = ball_to_ankle(dancer_skeleton())
     ankles = [f.ball[:, [0, 2]] - back * np.column_stack((np.sin(f.yaw), np.cos(f.yaw))) for f in feet]
     apart = np.abs(ankles[0] - ankles[1])
-    along = apart.max(axis=1) / np.maximum(np.linalg.norm(apart, axis=1), 0.05)
-    most = np.maximum(farthest * along, along_axes)[:, None]
+    most = np.maximum(farthest * apart.max(axis=1) / np.maximum(np.hypot(*apart.T), 0.05), along_axes)[:, None]
     return np.maximum(*ankles) - most, np.minimum(*ankles) + most
 
 

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from dancetutor_cli.dance.context import ON_BEAT, Context, distances, heard_beats
-from dancetutor_cli.dance.plan import Move, Plan, Sidestep, Step, Swing, chance_of
+from dancetutor_cli.dance.plan import Plan, Sidestep, Step, Swing, chance_of
 from dancetutor_cli.dance.settings import MotionSettings
-from dancetutor_cli.dance.settings_body import GrooveSettings, LayerSettings
+from dancetutor_cli.dance.settings_body import LayerSettings
 from dancetutor_cli.dance.smoothing import smooth, smooth_path
 from dancetutor_cli.dance.trajectory.height import LOWEST, step_landings
+from dancetutor_cli.dance.trajectory.stance import away_from_jumps, leisure
 from dancetutor_cli.dance.units import Array
 
 # The dancer hears the music: between slow steps and in waits, knees and chest give a little on every beat.
@@ -45,7 +46,6 @@ def dancing(tempo: Array, busy: Array, layers: LayerSettings) -> Array:
 # The trunk in jacks and slow steps: the dancer leans and turns from side to side with the beat, never twice alike.
 
 SEED = 20020716
-OVERSHOOT = 0.1  # share by which a smoothed path may overshoot its goal; the largest measured overshoot is 0.06
 MOST_LOST = 6.0  # largest factor by which the wanted bob is enlarged, because smoothing the height reduces it
 BEAT = (
     0.5  # seconds from pulse to pulse at which the dancer bobs by `groove.bob`, and at slower ones; quicker ones less
@@ -118,7 +118,7 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
     beat = beat_bounce(context, times, calmer, occupation.busy)
     beat *= 1.0 - (1.0 - WITHOUT_STEP) * (1.0 - occupation.waits) * _without_step(plan, times, context)
     share = dancing(calmer, occupation.busy, settings.layers) * (1.0 - occupation.waits)
-    grounded = _grounded(plan, times, 3.0 * numbers.ease)
+    grounded = away_from_jumps(plan, times, 3.0 * numbers.ease)
     slow = share
     share = share * (numbers.steps + (1.0 - numbers.steps) * jacks) * grounded
     easy = leisure(plan, times, numbers)
@@ -130,7 +130,7 @@ def groove_of(plan: Plan, times: Array, occupation: Occupation, context: Context
     deeper = np.maximum(numbers.deeper * jacks, numbers.leisure * np.maximum(easy, occupation.waits))
     sink = (1.0 + deeper) * settings.layers.bounce * late
     among = (1.0 - SLOW_LESS * slow) * (1.0 - np.clip(occupation.busy + occupation.waits, 0.0, 1.0))
-    among *= _grounded(plan, times, NEAR_JUMPS)
+    among *= away_from_jumps(plan, times, NEAR_JUMPS)
     lows = pulses(plan, heard_beats(context.beats, settings.layers.beat_shortest), PULSE_SHORTEST)
     bob, high = _bob(plan, lows, times, occupation.tempo, context)
     to_side = sway(plan, times, context)
@@ -229,69 +229,13 @@ def pulses(plan: Plan, beats: Array, shortest: float) -> Array:
 
 def latest_side(plan: Plan, times: Array) -> Array:
     """Return which foot (n,) has stepped last, -1 to 1, positive left, at even times; less where steps are quicker."""
-    steps = sorted((m.land, 1.0 - 2.0 * side) for side, track in enumerate(plan.feet) for m in track.moves if _to(m))
+    moves = [(m, 1.0 - 2.0 * side) for side, track in enumerate(plan.feet) for m in track.moves]
+    steps = sorted((m.land, side) for m, side in moves if isinstance(m, Step | Sidestep))
     if not steps:
         return np.zeros(len(times))
     lands, sides = np.array(steps).T
     last = np.append(0.0, sides)[np.searchsorted(lands, times)]
     return smooth_path(last[:, None], np.ones(len(times)), 1.0 / float(times[1] - times[0]), STEPS)[:, 0]
-
-
-def leisure(plan: Plan, times: Array, numbers: GrooveSettings) -> Array:
-    """Return how much time (n,) there is between the steps around even times, 0 to 1."""
-    lands = np.sort([m.land for track in plan.feet for m in track.moves if isinstance(m, Swing)])
-    k = np.searchsorted(lands, times)
-    gap = np.append(lands, np.inf)[k] - np.append(-np.inf, lands)[k]
-    much = smooth((gap - numbers.leisure_from) / (numbers.leisure_full - numbers.leisure_from))
-    eased = smooth_path(much[:, None], np.ones(len(times)), 1.0 / float(times[1] - times[0]), numbers.ease)[:, 0]
-    return np.asarray(smooth((eased - OVERSHOOT) / (1.0 - 2.0 * OVERSHOOT)))
-
-
-def stance(plan: Plan, times: Array, context: Context) -> Array:
-    """Return how far (n,) the weight must be towards the left foot, metres, at even times. If there is time, it goes
-    onto the foot that has landed, and `groove.stance_early` before the next step onto the foot that stands then; not
-    near jumps, nor at the bar.
-    """
-    numbers = context.settings.groove
-    if context.bar is not None:
-        return np.zeros(len(times))
-    steps = sorted((m.land, m.lift, 1.0 - 2.0 * k) for k, track in enumerate(plan.feet) for m in track.moves if _to(m))
-    if not steps:
-        return np.zeros(len(times))
-    lands, lifts, sides = np.array(steps).T
-    long = np.append(np.diff(lands), np.inf) > context.settings.wait.after + context.settings.wait.ease  # a wait
-    onto = np.append(np.maximum(lifts[1:] - numbers.stance_early, lands[:-1]), np.inf)
-    knots = np.column_stack((lands, onto)).ravel()
-    stays = np.column_stack((np.where(long, 0.0, sides), np.append(-sides[1:], 0.0))).ravel()
-    bears = np.append(0.0, stays)[np.searchsorted(knots, times)]
-    rate = 1.0 / float(times[1] - times[0])
-    over = smooth_path(bears[:, None], np.ones(len(times)), rate, numbers.stance_time)[:, 0]
-    return numbers.stance * over * leisure(plan, times, numbers) * _grounded(plan, times, 3.0 * numbers.ease)
-
-
-def pelvis_reach(plan: Plan, times: Array, context: Context) -> Array:
-    """Return how far (n,) the pelvis may be from an ankle along each axis, metres, at even times: farther at leisure,
-    where the free leg can be straight, so that hips come over the foot that stands; not near jumps, nor at the bar.
-    """
-    body, numbers = context.settings.body, context.settings.groove
-    if context.bar is not None:
-        return np.full(len(times), body.farthest)
-    easy = leisure(plan, times, replace(numbers, leisure_full=body.farther_full))
-    return body.farthest + body.farther * easy * _grounded(plan, times, 3.0 * numbers.ease)
-
-
-def _to(move: Move) -> bool:
-    return isinstance(move, Step | Sidestep)
-
-
-def _grounded(plan: Plan, times: Array, around: float) -> Array:
-    """Return how far away (n,) jumps are, 0 to 1, 1 from `around` seconds on: she goes up from both legs."""
-    out = np.ones(len(times))
-    for start, end in plan.flights:
-        near = slice(*np.searchsorted(times, (start - around, end + around)).tolist())
-        away = np.maximum(start - times[near], times[near] - end)
-        out[near] = np.minimum(out[near], smooth(2.0 * away / around - 1.0))
-    return out
 
 
 def repeated(plan: Plan, times: Array, settings: MotionSettings) -> Array:
@@ -337,7 +281,8 @@ def sway(plan: Plan, times: Array, context: Context) -> Array:
 # In each phrase of the music, arms are carried differently and the trunk leans more or less: slow, large ways.
 
 AMONG = 1.8  # seconds from a step from which on arms are carried
-ARMS, TRUNK = 2, 3  # of the seeds: other draws than those of `sway`
+ARMS, TRUNK, HEAD = 2, 3, 4  # of the seeds: other draws than those of `sway`
+HEAD_STAYS = 0.35  # share of the phrases in which the head stays where it is carried
 
 
 def carriage(plan: Plan, times: Array, context: Context) -> Array:
@@ -367,6 +312,20 @@ def bow(plan: Plan, times: Array, context: Context) -> Array:
     chance = chance_of(SEED, TRUNK, *plan.song, *context.own)
     place = chance.uniform(0.6, 1.0, (len(at), 1)) * np.where(np.arange(len(at)) % 2, 1.0, -1.0)[:, None]
     return _through_phrases(at, place, times, context.settings.groove.phrase_ease)[:, 0]
+
+
+def head_carriage(plan: Plan, times: Array, context: Context) -> Array:
+    """Return how far (n, 3) the head is carried to the left, up, and leant to the left, about -1 to 1; different in
+    each phrase.
+    """
+    at = _phrases(context)
+    if len(at) < 2:
+        return np.zeros((len(times), 3))
+    chance = chance_of(SEED, HEAD, *plan.song, *context.own)
+    far, stays = chance.uniform(0.6, 1.0, (len(at), 3)), chance.random((len(at), 3)) < HEAD_STAYS
+    place = far * np.cumprod(np.where(stays, 1.0, -1.0), axis=0) * chance.choice([-1.0, 1.0], 3)
+    way = _through_phrases(at, place, times, context.settings.groove.phrase_ease)
+    return np.asarray(way * [plan.hand, 1.0, plan.hand])
 
 
 def _phrases(context: Context) -> Array:

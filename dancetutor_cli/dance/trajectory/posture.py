@@ -27,7 +27,7 @@ from dancetutor_cli.dance.trajectory.facing import (
     pelvis_yaw,
     reaching,
 )
-from dancetutor_cli.dance.trajectory.groove import Groove, Occupation, groove_of, pelvis_reach, stance
+from dancetutor_cli.dance.trajectory.groove import Groove, Occupation, groove_of
 from dancetutor_cli.dance.trajectory.height import (
     Height,
     HeightGoals,
@@ -40,6 +40,7 @@ from dancetutor_cli.dance.trajectory.height import (
 )
 from dancetutor_cli.dance.trajectory.legs import Course, above_at_rest, heels_may_rise, leg_room, raised, upright_hips
 from dancetutor_cli.dance.trajectory.momentum import counter_motion
+from dancetutor_cli.dance.trajectory.stance import pelvis_reach, stance
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.dance.waits import WaitMotion, waiting_at
 

@@ -19,7 +19,8 @@ from dancetutor_cli.dance.quality.figures import Body, body_of
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
 from dancetutor_cli.dance.trajectory import groove as groove_module
-from dancetutor_cli.dance.trajectory.groove import Groove, Occupation, _bob, groove_of, pulses, repeated, stance
+from dancetutor_cli.dance.trajectory.groove import Groove, Occupation, _bob, groove_of, pulses, repeated
+from dancetutor_cli.dance.trajectory.stance import stance
 
 BEATS = tuple(np.arange(0.0, 20.0, 0.5))
 TIMES = np.arange(0.0, 12.0, 1.0 / 240.0)
