@@ -100,7 +100,7 @@ def _phrases(
     if short and text.endswith(short):
         tries += [(named, CALL_SMALL), (short, CALL_LEAST), (short, CALL_SMALL)]
     for label, least in tries:
-        lines, fits = _two_lines(label, size, width, face)
+        lines, fits = _few_lines(label, size, width, face)
         if fits >= least * size:
             return lines, fits
     for ends in (",", ",:"):
@@ -112,17 +112,17 @@ def _phrases(
     return fit_text(text, size, width, face, 3)
 
 
-def _two_lines(text: str, size: float, width: float, face: Typeface) -> tuple[list[str], float]:
-    """Return a text in at most two lines, and the size of the letters that fits.
+def _few_lines(text: str, size: float, width: float, face: Typeface, most: int = 2) -> tuple[list[str], float]:
+    """Return a text in at most `most` lines, and the size of the letters that fits.
 
     A line ends at a comma if possible, otherwise at a colon, otherwise anywhere.
     """
     for ends in (",", ",:"):
         for share in SHARES:
             lines = wrap_words(_parts(text, ends), share * size, width, face)
-            if len(lines) <= 2 and max(face.width(line, share * size) for line in lines) <= width:
+            if len(lines) <= most and max(face.width(line, share * size) for line in lines) <= width:
                 return lines, float(share * size)
-    return fit_text(text, size, width, face, 2)
+    return fit_text(text, size, width, face, most)
 
 
 def _parts(text: str, ends: str) -> list[str]:
@@ -167,11 +167,14 @@ class Calls:
         self._sprite = lru_cache(maxsize=32)(self._plate)
 
     def _plate(self, text: str, severity: str, tag: str = "", why: str = "") -> Sprite:
-        """Draw the plate of a call. why : the reason, shown if two lines of large enough letters have room for it"""
+        """Draw the plate of a call. why : the reason, shown if two or three lines of large letters have room for it"""
         size = 24 * self.scale
         width, height = self.box[2] - self.box[0] - (FLAG_EDGE + 0.1) * size, self.box[3] - self.box[1]
-        lines, fits = _two_lines(f"{text}: {why}", size, width, self.face) if why else ([], 0.0)
-        if fits < CALL_LEAST * size:
+        for most in (2, 3) if why else ():
+            lines, fits = _few_lines(f"{text}: {why}", size, width, self.face, most)
+            if fits >= CALL_LEAST * size and flag_height(len(lines), fits) <= height:
+                break
+        else:
             lines, fits = _phrases(text, size, (width, height), self.face, self._language, tag)
         size = fits
         return flag(lines, size, self.style.callout[severity], self.face, _foot_colour(text, self._language))

@@ -160,6 +160,17 @@ def test_a_call_has_two_lines_at_most(name: str, columns: int, monkeypatch: pyte
             assert picture.shape[1] <= wide + 2
 
 
+def test_a_call_gives_its_reason_where_three_lines_have_room_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[list[str]] = []
+    label = announce.flag
+    monkeypatch.setattr(announce, "flag", lambda lines, *rest: (made.append(lines), label(lines, *rest))[1])
+    text, why = "left foot crosses behind", "right foot has just stepped"
+    for wide, high, count in ((600, 150, 1), (310, 150, 2), (215, 150, 3), (215, 60, 1), (150, 150, 2)):
+        Calls((), (0, 0, wide, high), 1.0, STYLE)._plate(text, "move", "cross behind", why)
+        words = " ".join(made[-1])
+        assert (len(made[-1]), words) == (count, f"{text}: {why}" if wide > 150 and high > 60 else text), (wide, high)
+
+
 def calls(*passages: tuple[float, float, str]) -> Calls:
     """Calls of passages (begin, end, words), called out a second before."""
     found = tuple(Callout(begin, 2 * begin, text, "move", begin - 1.0, end, text) for begin, end, text in passages)
