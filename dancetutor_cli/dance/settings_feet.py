@@ -56,6 +56,7 @@ class StepSettings:
     foot_turn: Degrees
     let_go: Seconds
     ankle_limit: Degrees
+    ankle_pointed: Degrees
     crossover_turn: Ratio
     crossing: Count
     crossing_from: Degrees

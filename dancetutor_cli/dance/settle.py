@@ -43,13 +43,15 @@ class SettledTrajectory:
     """The final trajectory, after `rounds` of rough baking.
 
     residuals : metres, for each round the largest distance of the centre of mass from its planned place
-    heels, knees : (n, 2) radians, the parts of those of the trajectory that spare the ankles
+    heels, knees : (n, 2) radians, the parts of those of the trajectory that spare the ankles: heels that rise
+    drops : (n, 2) radians by which heels are lower, where ankles would be stretched too far
     """
 
     trajectory: Trajectory
     residuals: tuple[float, ...]
     heels: Array
     knees: Array
+    drops: Array
 
     @property
     def rounds(self) -> int:
@@ -74,13 +76,14 @@ def settle(
     now = situation_of(plan, times, context)
     every = max(1, round(rate / COARSE_RATE))
     coarse, ones = times[::every], np.ones(len(times))
-    deeper, heels, knees = np.zeros(len(plan.presses)), np.zeros((len(times), 2)), np.zeros((len(times), 2))
+    deeper, (heels, knees, drops) = np.zeros(len(plan.presses)), np.zeros((3, len(times), 2))
     may_rise, residuals = heels_may_rise(plan, times, settings.step.press_time), []
     rounds = ROUNDS_WITH_PALMS if plan.presses else SETTLE_ROUNDS
     if start is None or plan.presses:
         body = body_trajectory(plan, feet, now, context, bake_at_rest(plan, times, context))
     else:
-        body, heels, knees, rounds = start.trajectory, start.heels.copy(), start.knees.copy(), 1
+        body, rounds = start.trajectory, 1
+        heels, knees, drops = start.heels.copy(), start.knees.copy(), start.drops.copy()
     for number in range(rounds):
         targets = targets_at(plan, body, (coarse, both_feet(plan.feet, coarse, settings)), context)
         poses = solve_poses(context.skeleton, targets, settings.body.reach)
@@ -91,11 +94,13 @@ def settle(
         residuals.append(float(np.abs(offset[:, XZY] - planned).max()))
         above = smooth_path(cubic(coarse, offset, times), ones, rate, OFFSET_SMOOTH)
         deeper = _deeper(plan, deeper, coarse, poses.root[:, 1] - targets.pelvis[:, 1], context)
-        heels += np.column_stack([np.interp(times, coarse, h) for h in _heels_up(poses.rotations, context)])
+        rises, falls = _spared(poses.rotations, context)
+        heels += np.column_stack([np.interp(times, coarse, rise) for rise in rises.T])
+        drops += _around(coarse, falls, times, settings.step.ankle_time)
         heels = np.maximum(smooth_path(heels, ones, rate, settings.step.ankle_time), 0.0) * may_rise
         gives = giving_knees(context.skeleton, poses, round(GIVES_SPAN * rate / every))
         gives[body.reaching[::every].max(axis=1) > 0.0] = 0.0  # there hands on the floor say how she bends
-        knees += _around(coarse, gives, times)
+        knees += _around(coarse, gives, times, GIVES_SPAN)
         hips = cubic(coarse, hips_of(context.skeleton, poses).reshape(-1, 6), times).reshape(-1, 2, 3)
         root = np.column_stack((body.ground[:, 0], body.height, body.ground[:, 1]))
         push = push_off(plan, times, raised(feet, heels), root[:, None] + hips, context) * may_rise
@@ -106,16 +111,18 @@ def settle(
         elif number > 0:  # a round in between is for palms: it changes the height, and not the path over the ground
             rough = replace(rough, keep=True)
         body = body_trajectory(plan, feet, now, context, rough)
-        body = replace(body, heels=heels + np.maximum(push, body.heels), knees=knees)
-    return SettledTrajectory(body, tuple(residuals), heels, knees)
+        raises = heels + np.maximum(push, body.heels)
+        pitch = np.column_stack([foot.pitch for foot in feet]) + raises
+        body = replace(body, heels=raises - np.minimum(drops, np.maximum(pitch, 0.0)), knees=knees)
+    return SettledTrajectory(body, tuple(residuals), heels, knees, drops)
 
 
-def _around(coarse: Array, gives: Array, times: Array) -> Array:
-    """Return how far (n, 2) knees turn at `times` (n,), radians: softly around the turns (f, 2) at `coarse` (f,)."""
+def _around(coarse: Array, turns: Array, times: Array, span: float) -> Array:
+    """Return turns (n, 2) at `times` (n,), radians: softly, over `span` seconds, around those (f, 2) at `coarse`."""
     out = np.zeros((len(times), 2))
     for side, sign in product((0, 1), (1.0, -1.0)):
-        if (sign * gives[:, side]).max() > 0.0:
-            out[:, side] += sign * np.interp(times, coarse, upper_envelope(coarse, sign * gives[:, side], GIVES_SPAN))
+        if (sign * turns[:, side]).max() > 0.0:
+            out[:, side] += sign * np.interp(times, coarse, upper_envelope(coarse, sign * turns[:, side], span))
     return out
 
 
@@ -148,12 +155,11 @@ def _deeper(plan: Plan, deeper: Array, at: Array, drawn: Array, context: Context
     return out
 
 
-def _heels_up(rotations: Array, context: Context) -> tuple[Array, Array]:
-    """Return how far (f,) each heel must rise so that its ankle stays within its limits, radians."""
-    limit, most = np.radians((context.settings.step.ankle_limit, context.settings.step.ankle_most))
-    out = []
-    for side in "lr":
-        q = rotations[:, context.skeleton.index(f"{side}_talocrural")]
-        q = np.where(q[:, :1] < 0, -q, q)
-        out.append(np.clip(-2.0 * np.arctan2(q[:, 1], q[:, 0]) - limit, 0.0, most))
-    return out[0], out[1]
+def _spared(rotations: Array, context: Context) -> tuple[Array, Array]:
+    """Return how far each heel must rise, and fall, so that its ankle stays within its limits, (f, 2) radians each."""
+    step, joints = context.settings.step, [context.skeleton.index(f"{side}_talocrural") for side in "lr"]
+    bent, pointed, most = np.radians((step.ankle_limit, step.ankle_pointed, step.ankle_most))
+    q = rotations[:, joints]
+    q = np.where(q[..., :1] < 0, -q, q)
+    angle = 2.0 * np.arctan2(q[..., 1], q[..., 0])
+    return np.clip(-angle - bent, 0.0, most), np.clip(angle - pointed, 0.0, most)
