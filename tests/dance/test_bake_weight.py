@@ -21,7 +21,7 @@ from dancetutor_cli.dance.quality.posture import jump_knees, knee_angles, trunk_
 from dancetutor_cli.dance.quality.report import report
 from dancetutor_cli.dance.request import DanceRequest
 from dancetutor_cli.dance.rig.skeleton import dancer_skeleton
-from dancetutor_cli.dance.settings import default_settings
+from dancetutor_cli.dance.settings import MotionSettings, default_settings
 from dancetutor_cli.feet.play import runs
 from dancetutor_cli.run.reading import charts_path
 
@@ -76,6 +76,32 @@ def test_limits_that_were_tightened_hold_without_the_trembling(monkeypatch: pyte
     with_it = balance()
     monkeypatch.setattr(importlib.import_module("dancetutor_cli.dance.settle"), "TIGHTENED", 0)
     assert with_it > balance() + 0.3
+
+
+def onto_standing_foot(gap: float, settings: MotionSettings) -> float:
+    """Median of the hips' way from the middle to the foot that stands, 1 over it, the farthest of each step."""
+    events: list[Event] = [(1.0 + gap * k, {(0, 3)[k % 2]: (L, R)[k % 2]}) for k in range(12)]
+    motion = bake(chart().timing, play(events), pad(), settings=settings)
+    body, joint = body_of(motion), motion.skeleton.index
+    place = {
+        name: body.joints[:, joint(name)][:, [0, 2]] for name in ("l_hip", "r_hip", "l_talocrural", "r_talocrural")
+    }
+    hips, feet = (place["l_hip"] + place["r_hip"]) / 2, (place["l_talocrural"], place["r_talocrural"])
+    found = []
+    for k, (second, _) in enumerate(events[2:-2]):
+        first, last = np.searchsorted(body.times, (second, second + gap)).tolist()
+        stands, other = feet[k % 2][first + 6], feet[1 - k % 2][first + 6]
+        half = (stands - other) / 2
+        found.append(float((((hips[first:last] - other - half) @ half) / (half @ half)).max()))
+    return float(np.median(found))
+
+
+@pytest.mark.parametrize(("gap", "least"), [(0.9, 0.72), (1.2, 0.76), (1.6, 0.76)])
+def test_with_time_the_hips_come_over_the_foot_that_stands(gap: float, least: float) -> None:
+    """Side steps of two panels: the far leg is long enough for it. In 0.7 s it is balance that limits the way."""
+    near = replace(SETTINGS, body=replace(SETTINGS.body, farther=0.0))
+    with_it, without = onto_standing_foot(gap, SETTINGS), onto_standing_foot(gap, near)
+    assert with_it > least and with_it > without + 0.1
 
 
 def travelled(danced: list[tuple[float, dict[int, int]]], on_the_way: float) -> float:
@@ -183,7 +209,7 @@ def test_she_crouches_before_a_jump_and_after_it() -> None:
     take_off, landing = flies.min(), flies.max()
     assert height[(times > take_off - 0.3) & (times < take_off)].min() < stands - 0.03
     assert height[(times > landing) & (times < landing + 0.25)].min() < stands - 0.02
-    assert height[(times > 3.8) & (times < 4.1)].mean() > stands - 0.016  # and then she is up again
+    assert height[(times > 3.3) & (times < 3.8)].mean() > stands - 0.01  # then she is up again
 
 
 def test_close_jumps_leave_no_time_to_crouch() -> None:
