@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from dancetutor_cli.dance.context import ON_BEAT, Context, distances, heard_beats
-from dancetutor_cli.dance.plan import Plan, Sidestep, Step, Swing, chance_of
+from dancetutor_cli.dance.plan import Plan, Step, Swing, chance_of
 from dancetutor_cli.dance.settings import MotionSettings
 from dancetutor_cli.dance.settings_body import LayerSettings
 from dancetutor_cli.dance.smoothing import smooth, smooth_path
 from dancetutor_cli.dance.trajectory.height import LOWEST, step_landings
-from dancetutor_cli.dance.trajectory.stance import away_from_jumps, leisure
+from dancetutor_cli.dance.trajectory.stance import away_from_jumps, latest_side, leisure
 from dancetutor_cli.dance.units import Array
 
 # The dancer hears the music: between slow steps and in waits, knees and chest give a little on every beat.
@@ -50,7 +50,7 @@ MOST_LOST = 6.0  # largest factor by which the wanted bob is enlarged, because s
 BEAT = (
     0.5  # seconds from pulse to pulse at which the dancer bobs by `groove.bob`, and at slower ones; quicker ones less
 )
-BEATS, STEPS = 0.6, 0.07  # how much hands pump with the beat, and seconds over which they go with a step
+BEATS = 0.6  # how much hands pump with the beat
 PULSE_SHORTEST = 0.27  # seconds from one pulse of the bob to the next at least
 FOREARMS_LATE, ARMS_STILL = 0.05, 0.9  # seconds by which forearms follow the bob; part of it that quick steps take
 DEEPER = 1.12  # a pulse is lowered by so much more than raised before it, because straight legs end the way up
@@ -225,17 +225,6 @@ def pulses(plan: Plan, beats: Array, shortest: float) -> Array:
             if all(abs(second - other) >= shortest for other in chosen[max(k - 1, 0) : k + 1]):
                 chosen.insert(k, second)
     return np.array(chosen)
-
-
-def latest_side(plan: Plan, times: Array) -> Array:
-    """Return which foot (n,) has stepped last, -1 to 1, positive left, at even times; less where steps are quicker."""
-    moves = [(m, 1.0 - 2.0 * side) for side, track in enumerate(plan.feet) for m in track.moves]
-    steps = sorted((m.land, side) for m, side in moves if isinstance(m, Step | Sidestep))
-    if not steps:
-        return np.zeros(len(times))
-    lands, sides = np.array(steps).T
-    last = np.append(0.0, sides)[np.searchsorted(lands, times)]
-    return smooth_path(last[:, None], np.ones(len(times)), 1.0 / float(times[1] - times[0]), STEPS)[:, 0]
 
 
 def repeated(plan: Plan, times: Array, settings: MotionSettings) -> Array:

@@ -13,6 +13,7 @@ from dancetutor_cli.dance.smoothing import smooth, smooth_path
 from dancetutor_cli.dance.units import Array
 
 OVERSHOOT = 0.1  # share by which a smoothed path may overshoot its goal; the largest measured overshoot is 0.06
+STEPS = 0.07  # seconds over which hands go with a step
 
 
 def leisure(plan: Plan, times: Array, numbers: GrooveSettings) -> Array:
@@ -20,7 +21,7 @@ def leisure(plan: Plan, times: Array, numbers: GrooveSettings) -> Array:
     lands = np.sort([m.land for track in plan.feet for m in track.moves if isinstance(m, Swing)])
     k = np.searchsorted(lands, times)
     gap = np.append(lands, np.inf)[k] - np.append(-np.inf, lands)[k]
-    much = smooth((gap - numbers.leisure_from) / (numbers.leisure_full - numbers.leisure_from))
+    much = smooth((gap - numbers.leisure_from) / max(numbers.leisure_full - numbers.leisure_from, 1e-6))
     eased = smooth_path(much[:, None], np.ones(len(times)), 1.0 / float(times[1] - times[0]), numbers.ease)[:, 0]
     return np.asarray(smooth((eased - OVERSHOOT) / (1.0 - 2.0 * OVERSHOOT)))
 
@@ -37,7 +38,7 @@ def away_from_jumps(plan: Plan, times: Array, around: float) -> Array:
 
 def stance(plan: Plan, times: Array, context: Context) -> Array:
     """Return how far (n,) the weight must be towards the left foot, metres, at even times. If there is time, it goes
-    onto the foot that has landed, and `groove.stance_early` before the next step onto the foot that stands then; not
+    onto the foot that has landed, and `numbers.stance_early` before the next step onto the foot that stands then; not
     near jumps, nor at the bar.
     """
     numbers = context.settings.groove
@@ -56,6 +57,17 @@ def stance(plan: Plan, times: Array, context: Context) -> Array:
     rate = 1.0 / float(times[1] - times[0])
     over = smooth_path(bears[:, None], np.ones(len(times)), rate, numbers.stance_time)[:, 0]
     return numbers.stance * over * leisure(plan, times, numbers) * away_from_jumps(plan, times, 3.0 * numbers.ease)
+
+
+def latest_side(plan: Plan, times: Array) -> Array:
+    """Return which foot (n,) has stepped last, -1 to 1, positive left, at even times; less where steps are quicker."""
+    moves = [(m, 1.0 - 2.0 * side) for side, track in enumerate(plan.feet) for m in track.moves]
+    steps = sorted((m.land, side) for m, side in moves if isinstance(m, Step | Sidestep))
+    if not steps:
+        return np.zeros(len(times))
+    lands, sides = np.array(steps).T
+    last = np.append(0.0, sides)[np.searchsorted(lands, times)]
+    return smooth_path(last[:, None], np.ones(len(times)), 1.0 / float(times[1] - times[0]), STEPS)[:, 0]
 
 
 def pelvis_reach(plan: Plan, times: Array, context: Context) -> Array:
