@@ -78,7 +78,7 @@ class Callout:
     called_from : second from which the passage is called out; end : second at which it is over
     tag : fewer words, for the place beside the notes
     further : second, beat and tag of the passage's other moves
-    why : the reason, which is shown if there is room for it
+    with_reasons : the text with the reasons of its moves, shown if there is room for it; "" if there are none
     """
 
     second: float
@@ -89,7 +89,7 @@ class Callout:
     end: float
     tag: str
     further: tuple[tuple[float, float, str], ...] = ()
-    why: str = ""
+    with_reasons: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from dancetutor_cli.feet.limbs import LABELS
+from dancetutor_cli.feet.solver.techniques import side_of_half_turn
 from dancetutor_cli.run.errors import FileError, choose_text
 
 if TYPE_CHECKING:
@@ -175,7 +176,8 @@ def crossing_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Languag
 def turning_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Language) -> Phrase:
     """Return the phrase of a half turn: the foot that goes round, its place before or behind the other, and the reason.
 
-    In front is towards the screen. In a jump, the phrase names the foot in front.
+    In front is towards the screen. In a jump, the phrase names the foot in front. The same words are used for feet
+    that cross so far that the dancer's back is to the screen.
 
     move : name of the move for people, which says where the dancer then looks
     at : the play and the row that turns her
@@ -184,16 +186,32 @@ def turning_phrase(move: str, at: tuple[Play, int], pad: Pad, language: Language
     feet = [foot for foot in (0, 1) if foot in play.limb[row]]
     if not feet or (play.feet[row] < 0).any():
         return plain_phrase(move)
-    ahead = np.asarray(pad.panels)[play.feet[row]][:, 1]
-    if len(feet) == 2 and ahead[0] == ahead[1]:
+    depth = np.asarray(pad.panels)[play.feet[row]][:, 1]
+    if len(feet) == 2 and depth[0] == depth[1]:
         return plain_phrase(move)
-    foot = feet[0] if len(feet) == 1 else int(np.argmax(ahead))
-    over = float(ahead[foot] - ahead[1 - foot])
-    name = TURN_FRONT if over > 0 else TURN_BEHIND if over < 0 else TURN_ROUND
+    foot = feet[0] if len(feet) == 1 else int(np.argmax(depth))
+    ahead = _ahead(play, row, foot, pad)
+    name = TURN_FRONT if ahead > 0 else TURN_BEHIND if ahead < 0 else TURN_ROUND
     where = calls[name].replace("{who}", language.limbs[LABELS[foot]])
     reason = _reason(play, row, foot) if len(feet) == 1 else ""
     why = calls[reason].replace("{other}", language.limbs[LABELS[1 - foot]]) if reason else ""
     return Phrase(move, f"{move}, {where}", short_words(move), why, calls["several"].replace("{said}", where))
+
+
+def _ahead(play: Play, row: int, foot: int, pad: Pad) -> float:
+    """Return how far, in panels, this foot is nearer to the screen than the other one after a half turn.
+
+    If both are equally near, the foot's way decides; if that is level, too, the side to which the body turns.
+    """
+    depth = np.asarray(pad.panels)[:, 1]
+    here, other = depth[play.feet[row, foot]], depth[play.feet[row, 1 - foot]]
+    if here == other and row > 0 and (before := int(play.feet[row - 1, foot])) >= 0:
+        here = (here + depth[before]) / 2
+    if here == other and row > 0:
+        turn = (float(play.facing[row] - play.facing[row - 1]) + 180.0) % 360.0 - 180.0
+        side = side_of_half_turn(play.facing[row:], 2.0 * foot - 1.0) if abs(turn) == 180.0 else turn
+        return float(np.sign(side)) * (2 * foot - 1)
+    return float(here - other)
 
 
 def _reason(play: Play, row: int, foot: int) -> str:

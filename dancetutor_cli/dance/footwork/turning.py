@@ -14,6 +14,7 @@ from dancetutor_cli.dance.smoothing import STEEPEST
 from dancetutor_cli.dance.units import Array
 from dancetutor_cli.feet.limbs import Limb
 from dancetutor_cli.feet.play import Play
+from dancetutor_cli.feet.solver.techniques import side_of_half_turn
 
 NO_WAY = 1e-6  # metres
 HALF_TURN = 1e-6  # degrees that a turn may differ from half a turn
@@ -136,8 +137,7 @@ class Facing:
         facing = self.play.facing[self.rows[self.rows >= j]]
         if not is_half(float(facing[0])):
             return 180.0 * float(np.sign(rounded + facing[0] - normal))
-        aside = facing[~np.isclose(np.abs(facing), 180.0)]
-        return 180.0 * float(np.sign(aside[0]) if len(aside) and abs(aside[0]) > ASIDE else side)
+        return 180.0 * side_of_half_turn(facing, side)
 
     def _as_formed(self, j: int, turn: float, normal: float) -> float:
         """Return the turn at row `j` of the play as the form prefers it, if one foot steps."""

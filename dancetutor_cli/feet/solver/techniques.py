@@ -113,6 +113,7 @@ def _moves() -> _Moves:
 
 AWAY, BACK, ASIDE = "half-turn-away", "half-turn-back", "half-turn"
 HALF_TURNS = (AWAY, BACK, ASIDE)  # the dancer's back is to the screen after the turn, before it, or neither
+_AHEAD = 15.0  # degrees from the screen, up to which a dancer faces it
 _SIDEWAYS = 90.0  # degrees from the screen, beyond which the dancer's back is to the screen
 
 
@@ -120,6 +121,17 @@ def half_turned(facing: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Whether the body turns by 180 degrees between rows, (n - 1,); facing : (n,) degrees from the screen"""
     turn = facing[1:] - facing[:-1]
     return np.asarray(np.abs(np.abs((turn + 180) % 360 - 180) - 180) <= EPSILON)
+
+
+def side_of_half_turn(facing: NDArray[np.float64], otherwise: float) -> float:
+    """Return the side, 1 left or -1 right, to which a dancer turns her back to the screen.
+
+    She turns to the side to which she faces next, so that she does not turn back; `otherwise` if she never does.
+
+    facing : (n,) degrees from the screen, from the row of the half turn on
+    """
+    aside = facing[~np.isclose(np.abs(facing), 180.0)]
+    return float(np.sign(aside[0])) if len(aside) and abs(aside[0]) > _AHEAD else otherwise
 
 
 def moves_and_turns(play: Play) -> list[tuple[str, ...]]:

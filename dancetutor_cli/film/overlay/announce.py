@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from functools import lru_cache
+from operator import itemgetter
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from dancetutor_cli.run.languages import Language
 from dancetutor_cli.run.schema import RGB
 
 CALL_LEAST = 0.75  # smallest size of a call's letters before words are left out
+REASON_LEAST = 0.55  # smallest size of the letters of a call with reasons
 CALL_SMALL = 0.5  # smallest size of the letters before a call takes more than two lines
 SHARES = np.arange(1.0, CALL_LEAST - 0.01, -0.05)  # sizes of letters that are tried
 # Seconds that a call stays after its note; seconds in which it fades, short enough to leave no ghost.
@@ -117,7 +119,7 @@ def _few_lines(text: str, size: float, width: float, face: Typeface, most: int =
 
     A line ends at a comma if possible, otherwise at a colon, otherwise anywhere.
     """
-    for ends in (",", ",:"):
+    for ends in (",;", ",;:"):
         for share in SHARES:
             lines = wrap_words(_parts(text, ends), share * size, width, face)
             if len(lines) <= most and max(face.width(line, share * size) for line in lines) <= width:
@@ -166,18 +168,18 @@ class Calls:
         self._ends = np.array([max(one.end, one.second) + CALL_STAYS for one in callouts])
         self._sprite = lru_cache(maxsize=32)(self._plate)
 
-    def _plate(self, text: str, severity: str, tag: str = "", why: str = "") -> Sprite:
-        """Draw the plate of a call. why : the reason, shown if two or three lines of large letters have room for it"""
+    def _plate(self, text: str, severity: str, tag: str = "", with_reasons: str = "") -> Sprite:
+        """Draw the plate of a call, with its reasons if up to five lines of readable letters have room for them."""
         size = 24 * self.scale
         width, height = self.box[2] - self.box[0] - (FLAG_EDGE + 0.1) * size, self.box[3] - self.box[1]
-        for most in (2, 3) if why else ():
-            lines, fits = _few_lines(f"{text}: {why}", size, width, self.face, most)
-            if fits >= CALL_LEAST * size and flag_height(len(lines), fits) <= height:
-                break
-        else:
-            lines, fits = _phrases(text, size, (width, height), self.face, self._language, tag)
-        size = fits
-        return flag(lines, size, self.style.callout[severity], self.face, _foot_colour(text, self._language))
+        lines, fits = _phrases(text, size, (width, height), self.face, self._language, tag)
+        if with_reasons:
+            tries = (_few_lines(with_reasons, size, width, self.face, most) for most in (2, 3, 4, 5))
+            low = [(longer, smaller) for longer, smaller in tries if flag_height(len(longer), smaller) <= height]
+            longer, smaller = max(low, key=itemgetter(1), default=(lines, 0.0))
+            if smaller >= min(REASON_LEAST * size, fits):
+                lines, fits = longer, smaller
+        return flag(lines, fits, self.style.callout[severity], self.face, _foot_colour(text, self._language))
 
     def _current_calls(self, second: float) -> list[Callout]:
         shown = np.flatnonzero((self._begins <= second) & (second < self._ends))
@@ -187,7 +189,7 @@ class Calls:
         """Draw the calls of the present passage at `second` and of the next passage."""
         y = float(self.box[1])
         for one in self._current_calls(second):
-            label = self._sprite(one.text, one.severity, one.tag, one.why)
+            label = self._sprite(one.text, one.severity, one.tag, one.with_reasons)
             if y > self.box[1] and y + label.shape[0] > self.box[3]:
                 break  # the call would cover the words below the box; the tag beside the notes has the same words
             x = self.box[2] - label.shape[1]

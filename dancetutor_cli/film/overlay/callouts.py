@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -117,14 +118,22 @@ class _Passage:
         self.moves.append(move)
 
     def text(self) -> str:
-        several = self.kinds.values()
-        return ", ".join(some[0].text_of(len(some), len({one.text for one in some}) == 1) for some in several)
+        return ", ".join(words for words, _ in self._words())
 
-    def reason(self) -> str:
-        """Return the one reason of the kind of move that is named last, if no other kind has a reason, else ""."""
-        *others, last = self.kinds.values()
-        found = {phrase.why for phrase in last}
-        return found.pop() if len(found) == 1 and not any(phrase.why for some in others for phrase in some) else ""
+    def text_with_reasons(self) -> str:
+        """Return the words of each kind of move, each followed by its reason; "" if there is no reason."""
+        words, text = self._words(), ""
+        for (some, why), (_, after) in pairwise([*words, ("", "")]):  # a reason of two kinds stands after the second
+            text += f"{some}: {why}; " if why and why != after else f"{some}, "
+        return text[:-2] if any(why for _, why in words) else ""
+
+    def _words(self) -> list[tuple[str, str]]:
+        """Return the words of each kind of move and their reason: of moves with the same words the one of all."""
+        found = []
+        for some in self.kinds.values():
+            alike, reasons = len({one.text for one in some}) == 1, {one.why for one in some}
+            found.append((some[0].text_of(len(some), alike), "" if alike and len(reasons) > 1 else some[0].why))
+        return found
 
     def tag(self, further: int) -> str:
         """Return the tag of the first move, for the narrow place beside the notes, whose markers show the foot.
@@ -208,7 +217,7 @@ def callouts_of(
             end=float(end),
             tag=passage.tag(len(passage.further(seconds))),
             further=tuple(further(passage)),
-            why=passage.reason(),
+            with_reasons=passage.text_with_reasons(),
         )
         for passage, start, beat, begin, end in zip(passages, starts, beats, begins, ends, strict=True)
     )
@@ -274,7 +283,8 @@ def _moves(pad: Pad | None, play: Play | None, style: CallStyle, why: Mapping[in
                 if kind != FULL:
                     phrase = crossing_phrase(words[kind], (play, row), pad, style.language)
                 else:  # the first row's call has said that it is a crossover
-                    phrase = plain_phrase(words[kind] if row == span.first else short_words(words[kind]))
+                    name = words[kind] if row == span.first else short_words(words[kind])
+                    phrase = turning_phrase(name, (play, row), pad, style.language)
                 yield _Move(ticks[row], ticks[span.last], phrase)
     for row, names in enumerate(turns):
         named = {n for n in names if n in words and n not in CROSSED}

@@ -160,15 +160,16 @@ def test_a_call_has_two_lines_at_most(name: str, columns: int, monkeypatch: pyte
             assert picture.shape[1] <= wide + 2
 
 
-def test_a_call_gives_its_reason_where_three_lines_have_room_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_call_gives_its_reason_where_a_few_lines_have_room_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[list[str]] = []
     label = announce.flag
     monkeypatch.setattr(announce, "flag", lambda lines, *rest: (made.append(lines), label(lines, *rest))[1])
-    text, why = "left foot crosses behind", "right foot has just stepped"
-    for wide, high, count in ((600, 150, 1), (310, 150, 2), (215, 150, 3), (215, 60, 1), (150, 150, 2)):
-        Calls((), (0, 0, wide, high), 1.0, STYLE)._plate(text, "move", "cross behind", why)
+    text = "left foot crosses behind, spin"
+    longer = "left foot crosses behind: right foot has just stepped; spin"
+    for wide, high, count in ((800, 150, 1), (400, 150, 2), (240, 150, 3), (150, 150, 5), (200, 50, 2), (80, 150, 4)):
+        Calls((), (0, 0, wide, high), 1.0, STYLE)._plate(text, "move", "cross behind", longer)
         words = " ".join(made[-1])
-        assert (len(made[-1]), words) == (count, f"{text}: {why}" if wide > 150 and high > 60 else text), (wide, high)
+        assert (len(made[-1]), words) == (count, longer if wide > 80 and high > 50 else text), (wide, high)
 
 
 def calls(*passages: tuple[float, float, str]) -> Calls:

@@ -127,20 +127,27 @@ def test_calls_say_which_foot_crosses_and_whether_in_front_as_the_feet_do(danced
     assert len(found) >= 4 and ways == {(foot, way) for foot in (0, 1) for way in ("in front", "behind")}
 
 
-def test_a_call_of_two_kinds_of_moves_says_why_for_the_last_one() -> None:
-    """A bracket and a crossover over a hold in one call had no reason at all."""
+def test_a_call_of_two_kinds_of_moves_says_why_for_each() -> None:
+    """A passage of a crossover over a hold and a spin had no reason at all."""
     toe = Phrase("bracket", "right foot: toe on up", "toe on up")
     cross = Phrase("crossover", "left foot crosses behind", "cross behind", "right foot is on the hold")
-    for phrases, reason in (((toe, cross), cross.why), ((cross, toe), ""), ((cross,), cross.why), ((toe,), "")):
+    turn = Phrase("half turn", "half turn, left foot in front", "half turn", "right foot has just stepped")
+    both, other = turn._replace(why=cross.why), cross._replace(why=turn.why)
+    switched = cross._replace(text="right foot crosses", why="left foot has just stepped", several="{said} first")
+    for phrases, words in (
+        ((toe, cross), f"{toe.text}, {cross.text}: {cross.why}"),
+        ((cross, toe), f"{cross.text}: {cross.why}; {toe.text}"),
+        ((cross, turn), f"{cross.text}: {cross.why}; {turn.text}: {turn.why}"),
+        ((cross, both), f"{cross.text}, {both.text}: {cross.why}"),
+        ((switched, cross), f"{switched.text} first: {switched.why}"),
+        ((cross, cross), f"{cross.text} ×2: {cross.why}"),
+        ((cross, other, toe), ""),  # the same words for two reasons
+        ((toe,), ""),
+    ):
         passage = callouts._Passage(0, 0)
         for tick, phrase in enumerate(phrases):
             passage.add(callouts._Move(tick, tick, phrase))
-        assert passage.text().endswith(phrases[-1].text) and passage.reason() == reason
-    turned = cross._replace(move="half turn")
-    passage = callouts._Passage(0, 0)
-    for phrase in (cross, turned):
-        passage.add(callouts._Move(0, 0, phrase))
-    assert passage.reason() == "", "it would be taken for the reason of both"
+        assert passage.text_with_reasons() == words
 
 
 def test_a_call_says_why(danced: Danced) -> None:
@@ -160,7 +167,7 @@ def test_a_call_says_why(danced: Danced) -> None:
             play.limb[r, c] == other and play.rows.hold_end[r, c] > tick for r in range(row) for c in range(len(pad))
         )
         reason = "is on the hold" if holds else "has just stepped"
-        assert one.why == f"{('left', 'right')[other]} foot {reason}"
+        assert one.with_reasons == f"{one.text}: {('left', 'right')[other]} foot {reason}"
         assert " crosses " in one.text or one.text.startswith("half turn")
         reasons.add(reason)
     holds_too = bool((play.rows.hold_end >= 0).any())
@@ -195,6 +202,49 @@ def test_calls_of_half_turns_say_which_foot_comes_down_where(tmp_path: Path) -> 
     assert told == {(foot, way) for foot in ("left", "right") for way in ("in front", "behind")}
 
 
+AWAY = {"L U R L": "LRLR", "R U L R": "RLRL", "L D R L": "LRLR", "R D L R": "RLRL"}  # panels and feet of a beat each
+
+
+def test_calls_of_feet_crossed_all_the_way_say_which_foot_goes_where(tmp_path: Path) -> None:
+    """Before or behind the other foot, as the balls of the feet are halfway in the file's own joints, and why."""
+    path = written(tmp_path, "dance-single", tuple(AWAY))
+    head, _, notes = path.read_text().rpartition(":\n")
+    pins = [part for feet in AWAY.values() for part in (f"(LR){feet[:3]}", feet[3])]
+    measures = zip(pins, notes.rstrip(";\n").split("\n,\n"), strict=True)
+    path.write_text(head + ":" + "\n,".join(f"  // {{dt1! {pin}}}\n{rows}" for pin, rows in measures) + "\n;\n")
+    wanted = DanceRequest(path, Selection(index=0), fps=60.0)
+    (solved,) = some = solve(wanted)
+    play, pad = solved.play, solved.pad
+    assert play is not None and pad is not None
+    style = CallStyle(callout_words(ENGLISH), Ahead(0.5))
+    calls = callouts_of(CalloutSubject(solved.chart, pad, tuple), play, style, NONE)
+    second = play.rows.second
+    motion = perform(some, wanted, 1.0).bake(Cut(float(second[0]) - 1.0, float(second[-1]) + 0.5))[0].motion
+    found = set()
+    for row in [row for row, names in enumerate(play.moves) if "crossover-full" in names]:
+        (foot,) = {0, 1} & set(play.limb[row].tolist())
+        halfway = (second[row - 1 : row] + second[row : row + 1]) / 2
+        joints = joint_matrices(motion.skeleton, *sample(motion, halfway))[0]
+        depth = [joints[motion.skeleton.index(f"{side}_metatarsal"), 2, 3] for side in "lr"]
+        ahead = depth[foot] - depth[1 - foot]
+        assert abs(ahead) > 0.05
+        who, way = ("left", "right")[foot], "in front" if ahead > 0 else "behind"
+        words = f"back to the screen, {who} foot {way}: {('right', 'left')[foot]} foot has just stepped"
+        assert any(words in call.with_reasons and call.second <= second[row] <= call.end for call in calls)
+        found.add((who, way))
+    assert found == {(foot, way) for foot in ("left", "right") for way in ("in front", "behind")}
+
+
+def test_on_a_level_way_the_side_of_the_turn_says_which_foot_is_in_front() -> None:
+    """On two pads a foot can go round the other one along a straight line, and she does not turn back there."""
+    full, words = ("crossover-full",), "back to the screen"
+    way = ((), {4: 0}, (4, 7)), (full, {3: 1}, (4, 3)), ((), {2: 0}, (2, 3))
+    for facing, said in (((0, 180, 135), "in front"), ((0, 180, -135), "behind"), ((0, 180, 0), "in front")):
+        play, pad = rows(*way, steps="dance-double")
+        play.facing = np.array(facing, float)
+        assert turning_phrase(words, (play, 1), pad, ENGLISH).text == f"{words}, right foot {said}"
+
+
 def rows(*some: tuple[tuple[str, ...], dict[int, int], tuple[int, int]], steps: str = "dance-single") -> Any:
     """A play of rows of (moves, column -> limb, where the feet stand), a second apart."""
     pad = load_pad(steps)
@@ -207,7 +257,8 @@ def rows(*some: tuple[tuple[str, ...], dict[int, int], tuple[int, int]], steps: 
         second=np.arange(float(len(some))), tick=96 * np.arange(len(some)), hold_end=np.full(limb.shape, -1)
     )
     feet = np.array([stand for *_, stand in some])
-    return SimpleNamespace(rows=of_rows, limb=limb, feet=feet, moves=tuple(names for names, *_ in some)), pad
+    moves = tuple(names for names, *_ in some)
+    return SimpleNamespace(rows=of_rows, limb=limb, feet=feet, facing=np.zeros(len(some)), moves=moves), pad
 
 
 def test_a_jump_that_crosses_names_the_foot_in_front() -> None:
