@@ -166,7 +166,7 @@ def test_a_call_gives_its_reason_where_a_few_lines_have_room_for_it(monkeypatch:
     monkeypatch.setattr(announce, "flag", lambda lines, *rest: (made.append(lines), label(lines, *rest))[1])
     text = "left foot crosses behind, spin"
     longer = "left foot crosses behind: right foot has just stepped; spin"
-    for wide, high, count in ((800, 150, 1), (400, 150, 2), (240, 150, 3), (150, 150, 5), (200, 50, 2), (80, 150, 4)):
+    for wide, high, count in ((800, 150, 1), (400, 150, 2), (240, 150, 3), (150, 150, 5), (240, 40, 2), (80, 150, 3)):
         Calls((), (0, 0, wide, high), 1.0, STYLE)._plate(text, "move", "cross behind", longer)
         words = " ".join(made[-1])
         assert (len(made[-1]), words) == (count, longer if wide > 80 and high > 50 else text), (wide, high)
