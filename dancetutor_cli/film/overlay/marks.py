@@ -16,6 +16,7 @@ from dancetutor_cli.film.clock import Pass
 from dancetutor_cli.film.notes import Callout, NoteTrack
 from dancetutor_cli.film.overlay import sprites
 from dancetutor_cli.film.overlay.blit import Sprite, draw_sprite
+from dancetutor_cli.film.overlay.free_places import FreePlaces, LaneMark
 from dancetutor_cli.film.overlay.sprites import FLAG_EDGE
 from dancetutor_cli.film.overlay.text import Typeface, fit_text, narrowest_width
 from dancetutor_cli.film.picture import Frame
@@ -92,10 +93,10 @@ def lane_width_for_words(words: float, lane: float, box: tuple[int, int, int, in
 # The marks that show the limb of each note: their size, their place on the arrow, and the choice of marks.
 #
 # A mark stands on the arrow's tail, so that the head shows the direction. If the arrows of a lane overlap, the mark
-# stands on the visible strip of its arrow, and is no higher than the strip. If marks would cover each other, they are
-# smaller: the marks of the left foot stand on the left of the lane, the marks of the right foot on the right, and
-# unreadable marks are left out. On diagonals, marks stay on the tail's side as long as possible. The cross of a note
-# that is not played stays in the middle, where it covers neither side.
+# stands where it covers least of the others, and is no higher than its arrow's visible strip. If marks would cover each
+# other, they are smaller: the marks of the left foot stand on the left of the lane, the marks of the right foot on the
+# right, and unreadable marks are left out. On diagonals, marks stay on the tail's side as long as possible. The cross
+# of a note that is not played stays in the middle, where it covers neither side.
 
 MARK_SHARE, MARK_MOST = 0.04, 0.58  # minimum size of an L or R, in heights of the box; maximum size, in lanes
 READ, READ_MOST = 16, 0.5  # pixels of a mark with a letter 8 pixels high, also on diagonals; maximum size, in lanes
@@ -138,6 +139,7 @@ class Marks:
         stepped = notes.judged & ~np.isin(notes.kind, (Kind.MINE, Kind.FAKE))
         self._marked = stepped & ((notes.limb >= 0) | bool((notes.limb >= 0).any()))
         self._sprite = lru_cache(maxsize=256)(self._draw_sprite)
+        self._free = FreePlaces(self._arrow, geometry.down)
         self._places = lru_cache(maxsize=64)(self._find)
 
     def of(self, direction: float | None) -> int:
@@ -209,23 +211,31 @@ class Marks:
             side[here[on_tail]] = 0
             size[here] = np.minimum(size[here], np.maximum(strip, self.least)).astype(np.int16)
             size[here] = self._with_crosses(along, size[here], crosses, usual)
-            tail = np.where(side[here] == 0, self.behind(direction)[1], 0.0)
-            below[here] = self._seen(tail, size[here], strip)
+            below[here] = self._below(direction, along, size[here], side[here], strip)
         return Places(size, side, below)
 
-    def _seen(
-        self, tail: NDArray[np.float64], size: NDArray[np.int16], strip: NDArray[np.float64]
+    def _below(
+        self,
+        direction: float | None,
+        along: NDArray[np.float64],
+        size: NDArray[np.int16],
+        side: NDArray[np.int16],
+        strip: NDArray[np.float64],
     ) -> NDArray[np.float64]:
-        """Return the places of marks at which they do not cover the arrow before them.
-
-        A mark stays at `tail`, or moves away from that arrow.
-
-        tail : pixels down from the arrows' middles; size : sizes of the marks; strip : visible parts of their arrows
-        """
-        way = -1.0 if self.geometry.down else 1.0
-        half = self._arrow / 2
-        least = half - np.minimum(strip, self._arrow) + size / 2
-        return np.asarray(way * np.where(size > 0, np.maximum(way * tail, np.minimum(least, half - size / 2)), 0.0))
+        """Return how far the marks of a lane are below the middles of their arrows, pixels. strip : visible parts"""
+        across, tail = self.behind(direction)
+        lane = zip(
+            along.tolist(),
+            size.tolist(),
+            np.where(side == 0, across, side * SIDE_OFFSET * self.geometry.lane).tolist(),
+            np.where(side == 0, tail, 0.0).tolist(),
+            strip.tolist(),
+            [*strip[1:].tolist(), np.inf],
+            strict=True,
+        )
+        out, shown = np.zeros(len(size)), size > 0
+        out[shown] = self._free.below(direction, [mark for mark in map(LaneMark._make, lane) if mark.size > 0])
+        return out
 
     def _thinned(self, along: NDArray[np.float64], most: int, crosses: NDArray[np.float64]) -> NDArray[np.int16]:
         """Return the sizes of the marks on one side of a lane, at most `most` pixels; 0 for a mark near the one before.

@@ -96,9 +96,10 @@ def test_marks_have_the_room_that_there_is(limbs: list[int]) -> None:
         shown = np.flatnonzero(places.size)
         for i in shown.tolist():
             for j in shown[shown > i].tolist():
-                if places.side[i] == places.side[j] or 0 in (places.side[i], places.side[j]):
+                apart = (places.size[i] + places.size[j]) / 2
+                if abs(places.side[i] - places.side[j]) * 0.25 * 76.0 < apart:
                     down = (j - i) * 0.25 * spacing + places.below[j] - places.below[i]
-                    assert down >= (places.size[i] + places.size[j]) / 2 - 1e-6, (spacing, i, j)
+                    assert down >= apart - 1e-6, (spacing, i, j)
 
 
 def test_a_cross_is_seen_between_marks_where_there_is_room_for_it() -> None:
@@ -127,13 +128,13 @@ def test_notes_that_nobody_steps_have_no_mark() -> None:
 
 def test_an_arrow_that_comes_sooner_does_not_cover_a_mark() -> None:
     """The second note's mark is as whole as it is alone, where it is then."""
-    seen = []
+    seen: list[int] = []
     for seconds in ([1.0, 1.45], [0.2, 1.45]):
         drawn = highway(seconds, [0, 1], 76.0, USUAL)
         frame = np.zeros((672, 400, 3), np.uint8)
-        drawn.draw(frame, 0.0, 0.0)
         places = drawn.marks.places(76.0)
         x, y = drawn.geometry.left + 38, 1.45 * 76 + places.below[1]
+        drawn.draw(frame, (y - round(y)) / 76, 0.0)  # so that both marks are as sharp
         half = places.size[1] // 2
         here = frame[round(y) - half : round(y) + half, round(x) - half : round(x) + half].astype(int)
         seen.append((np.abs(here - limb_colours().by_limb[1]).sum(axis=2) < 60).sum())
@@ -145,16 +146,42 @@ DENSE = [
 ]  # fmt: skip
 
 
+def covered_share(drawn: Highway, number: int, spacing: float) -> float:
+    """Return the largest share of an arrow's visible pixels that the mark of another note covers. number : of notes"""
+    geometry, size = drawn.geometry, drawn.size
+    places, way = drawn.marks.places(spacing), -1 if geometry.down else 1
+    shape = sprites.arrow(size, geometry.directions[0], (200, 60, 60))[..., 3] > 128
+    picture = np.full((2 * round(number * spacing + size) + 2 * size, size), -1)
+    middles = [len(picture) // 2 + way * round(spacing * (k - number / 2)) for k in range(number)]
+    for k in reversed(range(number)):  # the earlier ones on top
+        top = middles[k] - size // 2
+        picture[top : top + size][shape] = k
+    seen, worst = np.bincount(picture[picture >= 0], minlength=number), 0.0
+    for k in np.flatnonzero(places.size).tolist():
+        mark = sprites.marker(int(places.size[k]), int(drawn.notes.limb[k]), FACE, rim=True)[..., 3] > 128
+        across = (
+            places.side[k] * 0.25 * geometry.lane if places.side[k] else drawn.marks.behind(geometry.directions[0])[0]
+        )
+        high = len(mark)
+        top, left = round(middles[k] + places.below[k] - high / 2), round((size - high) / 2 + across)
+        cut = max(0, -left), min(high, size - left)
+        under = picture[top : top + high, left + cut[0] : left + cut[1]][mark[:, cut[0] : cut[1]]]
+        shares = np.bincount(under[under >= 0], minlength=number) / seen
+        shares[[k, 0, number - 1]] = 0.0  # its own arrow, and those without arrows on both sides
+        worst = max(worst, float(shares.max()))
+    return worst
+
+
 @pytest.mark.parametrize("down", [False, True])
 @pytest.mark.parametrize("direction", [225.0, 315.0, None, 45.0, 135.0, 0.0, 90.0, 180.0])
 @pytest.mark.parametrize(("lane", "box"), [(40.0, NARROW), (76.0, USUAL), (139.0, PHONE)])
-def test_a_mark_on_dense_rows_covers_no_other_arrow(
+def test_a_mark_on_dense_rows_hardly_covers_another_arrow(
     lane: float, box: tuple[int, int, int, int], direction: float | None, down: bool
 ) -> None:
-    """On Pump's diagonals it stood over the arrow that comes sooner, and beyond the lane's edge.
+    """It covered a quarter of the visible part of straight arrows, and a fifth of Pump's diagonals.
 
-    Down to the spacing at which a mark could not be read any more. Of an arrow under another one only a strip is seen:
-    the mark is on that strip of its own.
+    Down to the spacing at which a mark could not be read any more. Of an arrow under another one only a strip is seen.
+    Crosses, of notes that nobody plays, stand between the marks of both feet, where there is less room.
     """
     plan = film_plan(np.arange(1.0, 7.0))
     alone = np.zeros(6, np.int16)
@@ -162,20 +189,15 @@ def test_a_mark_on_dense_rows_covers_no_other_arrow(
         notes = replace(plan.notes, column=alone, limb=np.array(limbs, np.int8))
         score = Score(notes, replace(plan.presses, column=alone), plan.lines)
         drawn = Highway(score, HighwayGeometry(box, lane, 0.0, (direction,), down), parse_scroll("C60"), 120.0, FACE)
-        marks, half, way = drawn.marks, drawn.size / 2, -1.0 if down else 1.0
-        for apart in np.linspace(marks.least * 1.1, 1.4 * lane, 25).tolist():
+        marks, half = drawn.marks, drawn.size / 2
+        for apart in np.linspace(marks.least * 1.1, 1.4 * lane, 8).tolist():
             places = marks.places(apart)
-            middles = way * apart * np.arange(6)
             shown = np.flatnonzero(places.size)
             assert {limbs[i] for i in shown} >= set(limbs) - {-1}
-            for i in shown.tolist():
-                top, bottom = (middles[i] + places.below[i] + side * places.size[i] / 2 for side in (-1, 1))
-                assert top >= middles[i] - half - 1e-6 and bottom <= middles[i] + half + 1e-6, "on its own arrow"
-                for sooner in range(i):
-                    others = middles[sooner] - half, middles[sooner] + half
-                    assert bottom <= others[0] + 1e-6 or top >= others[1] - 1e-6, (apart, i, sooner)
-                across = places.side[i] * 0.25 * lane if places.side[i] else marks.behind(direction)[0]
-                assert abs(across) + places.size[i] / 2 <= lane / 2
+            assert covered_share(drawn, 6, apart) <= (0.11 if -1 in limbs else 0.055)
+            assert (np.abs(places.below[shown]) + places.size[shown] / 2 <= half + 1e-6).all(), "on its own arrow"
+            across = np.where(places.side, places.side * 0.25 * lane, marks.behind(direction)[0])
+            assert (np.abs(across) + places.size / 2 <= lane / 2)[shown].all()
 
 
 @pytest.mark.parametrize("limb", [0, 1])
