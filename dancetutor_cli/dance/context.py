@@ -28,7 +28,9 @@ if TYPE_CHECKING:
 # Places in the world: panels on the ground, and the places on a panel where a foot lands.
 
 HALF_PANEL = PANEL / 2
-PHASE = 1.9  # seconds; no divisor of any period of the waves
+PHASE_SEED = 20261130
+APART = (0.3, 0.7)  # of a breath: how far the breaths of two dancers are apart
+BREATHS = 8  # a phase is shorter than this many breaths, so that blinks and slower waves are apart, too
 HOLD_GRACE = 0.25  # seconds that a held note may be let go: StepMania's TimingWindowSecondsHold
 
 
@@ -99,6 +101,7 @@ class Context:
     stays : whether she does not walk off after the last step; course : settings that change over the song, None:
     constant
     person : 0 for a single dancer, else her number beside the other one: each has her own random choices and phase
+    phase : seconds by which her breath, blinks and slow movements are ahead of a single dancer's
     sides : the side from which she comes and the side to which she goes, 0 left or 1 right, None: as the notes decide
     """
 
@@ -113,6 +116,7 @@ class Context:
     stays: bool = False
     course: SettingsCourse | None = None
     person: int = 0
+    phase: float = 0.0
 
     def at(self, second: float) -> Context:
         """Return the context with the settings of a second."""
@@ -132,10 +136,12 @@ class Context:
         """
         return (self.person,) if self.person else ()
 
-    @property
-    def phase(self) -> float:
-        """Seconds by which this dancer's breath, blinks and slow movements are ahead of a single dancer's."""
-        return PHASE * self.person
+
+def phase_of(plan: Plan, context: Context) -> float:
+    """Return the phase of a dancer, seconds, as in `Context`: drawn for the song and the dancer, 0 for a single one."""
+    chance = chance_of(PHASE_SEED, *plan.song, *context.own)
+    breaths = chance.integers(BREATHS) + chance.uniform(*APART)
+    return float(breaths) * context.settings.layers.breath_time if context.own else 0.0
 
 
 def context_of(pad: Pad, settings: MotionSettings, beats: tuple[float, ...] = (), bar: Bar | None = None) -> Context:
@@ -179,7 +185,7 @@ def is_on_beat(context: Context, second: float) -> bool:
 
 # The bar behind the dancer: its place, the stand of a dancer who holds it, and when each hand is on it.
 
-SEED = 19981121
+BAR_SEED = 19981121
 ACROSS_SLOWER = 1.5  # factor of the time that a hand needs to reach the rail if it crosses over
 
 
@@ -224,7 +230,7 @@ def grip_phrases(plan: Plan, times: Array, yaw: Array, settings: BarSettings) ->
 
     yaw : (n,) radians that the chest is turned
     """
-    chance = chance_of(SEED, *plan.song)
+    chance = chance_of(BAR_SEED, *plan.song)
     holds, apart = np.ones((len(times), 2), dtype=bool), np.full(len(times), settings.apart)
     notes, start = np.array([touch.start for touch in plan.touches]), float(times[0])
     while start < times[-1]:

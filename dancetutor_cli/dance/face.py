@@ -1,9 +1,10 @@
-"""The dancer's face: narrowed lids in hard passages, a breath and a smile after them, smiles in easy ones, and eyes
-that look at the place of the next step.
+"""The dancer's face: narrowed lids in hard passages, a breath and a smile after them, smiles in easy ones, wide eyes in
+jumps, and eyes that look at the place of the next step.
 
-A passage is hard if it has quick steps around it (`height.tempo_factor`, averaged over some seconds). After a hard
-passage its effect fades at an even rate, so relief is the largest value so far, minus the present one. The mesh has
-lids, a jaw and eyes that turn; brows are painted.
+A passage is hard if it has quick steps around it (`height.tempo_factor`, averaged over some seconds), or if she is
+turned from the screen. How hard it seems to her also changes slowly, so that a face does not freeze where steps go on
+evenly. After a hard passage its effect fades at an even rate, so relief is the largest value so far, minus the present
+one. The mesh has lids, a jaw and eyes that turn; brows are painted.
 """
 
 from __future__ import annotations
@@ -23,12 +24,13 @@ from dancetutor_cli.dance.rig.quaternion import UP
 from dancetutor_cli.dance.rig.skeleton import EYELID_CLOSING, JAW_LAUGH, Skeleton
 from dancetutor_cli.dance.settings_body import FaceSettings, LayerSettings
 from dancetutor_cli.dance.smoothing import smooth
+from dancetutor_cli.dance.trajectory.facing import wrapped
 from dancetutor_cli.dance.trajectory.height import tempo_factor
 from dancetutor_cli.dance.trajectory.posture import Trajectory
 from dancetutor_cli.dance.units import Array, Poses
 from dancetutor_cli.dance.waits import Song, slowly, song_of
 
-BLINK_SEED, PEEK_SEED, SMILE_SALT = 20140513, 20260611, 3
+BLINK_SEED, PEEK_SEED, SMILE_SALT, EFFORT_SALT, MOUTH_SALT = 20140513, 20260611, 3, 4, 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,11 +38,13 @@ class Mood:
     """The expression of the dancer's face at f times, (f,) 0 to 1 each.
 
     hard : her concentration; relief : how much harder the dance was a moment ago; easy : how long it has been easy
+    air : how much of the time around it both feet are in the air
     """
 
     hard: Array
     relief: Array
     easy: Array
+    air: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,14 +58,22 @@ class Peeks:
 def mood_at(plan: Plan, body: Trajectory, at: Array, context: Context) -> Mood:
     """Return the dancer's mood at times `at` (f,), seconds, from the steps around the body's even times."""
     numbers, times = context.settings.face, body.times
-    effort = moving_mean(tempo_factor(plan, times, context.settings), 1.0 / float(times[1] - times[0]), numbers.around)
+    rate = 1.0 / float(times[1] - times[0])
+    effort = moving_mean(tempo_factor(plan, times, context.settings), rate, numbers.around)
+    turned = moving_mean(smooth(np.abs(wrapped(body.yaw)) / np.radians(numbers.turned_from)), rate, numbers.around)
+    seems = slowly(song_of(plan, context), times, numbers.wander_time, EFFORT_SALT)
+    effort = effort + numbers.turned * turned + numbers.wander * smooth(effort / numbers.hard_from) * seems
     effort = np.maximum(effort, body.reaching.max(axis=1))
+    flights = np.zeros(len(times))
+    for start, end in np.searchsorted(times, plan.flights).tolist():
+        flights[start:end] = 1.0
     faded = (times - times[0]) / numbers.fades
     before = np.maximum.accumulate(effort + faded) - faded
     hard = smooth((effort - numbers.hard_from) / (numbers.hard_full - numbers.hard_from))
     relief = smooth((before - effort - numbers.relief_from) / (numbers.relief_full - numbers.relief_from))
     easy = 1.0 - smooth(before / numbers.hard_from)
-    return Mood(*(np.interp(at, times, one) for one in (hard, relief, easy)))
+    air = moving_mean(flights, rate, numbers.air_around)
+    return Mood(*(np.interp(at, times, one) for one in (hard, relief, easy, air)))
 
 
 def peeks_at(plan: Plan, free: Array, at: Array, context: Context) -> Peeks:
@@ -101,25 +113,33 @@ def with_peeks(glances: Glances, mood: Mood, peeks: Peeks, free: Array, numbers:
 def add_face(skeleton: Skeleton, poses: Poses, at: Array, shown: tuple[Mood, Peeks, Plan], context: Context) -> None:
     """Turn lids, jaw and eyes at times `at` (f,), in place. shown : mood, peeks, and the plan"""
     (mood, peeks, plan), rotations = shown, poses.rotations
-    numbers, layers = context.settings.face, context.settings.layers
+    numbers, layers, song = context.settings.face, context.settings.layers, song_of(plan, context)
     down = np.zeros(len(at))
     looking = np.flatnonzero(peeks.share > 0.0)
     if len(looking):
         down[looking] = peeks.share[looking] * _look_at(skeleton, poses, looking, peeks, numbers)
-    smile = np.maximum(numbers.relief * mood.relief, mood.easy * _phrases(song_of(plan, context), at, numbers))
-    lids = numbers.narrow * mood.hard + numbers.squint * smile + down * numbers.lids_follow
-    open_eye = (1.0 - eyelids(at + context.phase, layers.blink_time, layers.blink)) * (1.0 - np.clip(lids, 0.0, 1.0))
+    smile = np.maximum(
+        numbers.relief * mood.relief, numbers.easy * mood.easy * _now_and_then(song, at, numbers.smile_time, SMILE_SALT)
+    )
+    pressed = mood.hard * (1.0 - _now_and_then(song, at, numbers.mouth_time, MOUTH_SALT))
+    lids = numbers.narrow * (pressed + mood.hard) / 2 + numbers.squint * smile + down * numbers.lids_follow
+    lids = np.clip(lids - numbers.widen * mood.air, -numbers.widen, 1.0)
+    open_eye = (1.0 - eyelids(at + context.phase, layers.blink_time, layers.blink)) * (1.0 - lids)
     jaw = np.radians(JAW_LAUGH) * np.maximum(smile, _laugh(at, plan.last, layers))
     breath = (1.0 + np.sin(2 * np.pi * (at + context.phase) / layers.breath_time)) / 2
-    jaw += np.radians(numbers.panting) * mood.relief * breath - np.radians(numbers.pressed) * mood.hard
+    jaw += np.radians(numbers.panting) * (mood.relief * breath + mood.hard - pressed)
+    jaw -= np.radians(numbers.pressed) * pressed
+    jaw += np.radians(numbers.gasp) * mood.air
     for side in "lr":
         _set(skeleton, rotations, f"{side}_eyelid_joint", np.radians(EYELID_CLOSING) * (1.0 - open_eye))
     _set(skeleton, rotations, "temporomandibular", jaw)
 
 
-def _phrases(song: Song, at: Array, numbers: FaceSettings) -> Array:
-    """Return how far (f,) the dancer smiles in easy passages, 0 to 1: for a while, then not, always in other ways."""
-    return numbers.easy * smooth(slowly(song, at, numbers.smile_time, SMILE_SALT) / 0.6)
+def _now_and_then(song: Song, at: Array, every: float, salt: int) -> Array:
+    """Return a value (f,) that rises from 0 to 1 and falls again about every `every` seconds, at other times for each
+    `salt`.
+    """
+    return smooth((np.sin(2 * np.pi * at / every + 2.0 * slowly(song, at, every, salt)) - 0.2) / 0.6)
 
 
 def _laugh(at: Array, last: float, layers: LayerSettings) -> Array:

@@ -176,17 +176,25 @@ class FaceSettings:
 
     around: Seconds
     fades: Duration
+    turned: Ratio
+    turned_from: Degrees
+    wander: Ratio
+    wander_time: Duration
     hard_from: Ratio
     hard_full: Ratio
     relief_from: Ratio
     relief_full: Ratio
     narrow: Ratio
     pressed: Degrees
+    mouth_time: Duration
     relief: Ratio
     panting: Degrees
     squint: Ratio
     easy: Ratio
     smile_time: Duration
+    air_around: Duration
+    widen: Ratio
+    gasp: Degrees
     least: Seconds
     long: Seconds
     often: Ratio

@@ -112,6 +112,17 @@ def test_two_who_are_each_others_mirror_image_are_two_people_all_the_same(tmp_pa
     assert np.median(np.abs(one - swapped)) > 0.01
 
 
+def test_the_phase_of_the_second_dancer_is_drawn_for_each_song(tmp_path: Path) -> None:
+    """It was 1.9 s in all songs. Breaths are apart by a third of a breath at least."""
+    phases = []
+    for length in range(8, len(OWN) + 1):
+        first, second = danced(tmp_path, "couple", [row + row for row in OWN[:length]]).dancers
+        breath = second.context.settings.layers.breath_time
+        assert first.context.phase == 0.0 and 0.3 <= second.context.phase / breath % 1.0 <= 0.7
+        phases.append(second.context.phase)
+    assert np.ptp(phases) > 5.0 and len(set(phases)) > 2
+
+
 def test_a_single_dancer_has_person_0(tmp_path: Path) -> None:
     (alone,) = danced(tmp_path, "single", OWN).dancers
     assert alone.context.person == 0 and alone.context.own == () and alone.context.phase == 0.0

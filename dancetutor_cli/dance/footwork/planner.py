@@ -10,7 +10,7 @@ import numpy as np
 
 from dancetutor_cli.chart.names import TICKS_PER_BEAT
 from dancetutor_cli.dance.clearance import SHARES, Way, detour, evenness
-from dancetutor_cli.dance.context import Context, bar_of, context_of, holding
+from dancetutor_cli.dance.context import Context, bar_of, context_of, holding, phase_of
 from dancetutor_cli.dance.foot_path import shoe_path
 from dancetutor_cli.dance.footwork.footfalls import Stand, current_stand
 from dancetutor_cli.dance.footwork.footing import SHORTEST_SWING, Footing, Proposal, Row, hold, pair, press, pressed_by
@@ -341,6 +341,7 @@ def plan_dance(timing: Timing, play: Play, pad: Pad, **manner: Unpack[Manner]) -
 
     play, dropped = without_unplayable(play, pad, manner.get("dropped", ()))
     plan = replace(plan_footwork(play, second, manner.get("gait", "flat"), context), dropped=dropped)
+    context = replace(context, phase=phase_of(plan, context))
     if rail is None:
         return plan, context
     from dancetutor_cli.dance.grips import grips_of
