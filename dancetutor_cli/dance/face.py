@@ -66,13 +66,13 @@ def mood_at(plan: Plan, body: Trajectory, at: Array, context: Context) -> Mood:
     effort = np.maximum(effort, body.reaching.max(axis=1))
     flights = np.zeros(len(times))
     for start, end in np.searchsorted(times, plan.flights).tolist():
-        flights[start:end] = 1.0
+        flights[start:end] = float(end - start > numbers.air_least * rate)
     faded = (times - times[0]) / numbers.fades
     before = np.maximum.accumulate(effort + faded) - faded
     hard = smooth((effort - numbers.hard_from) / (numbers.hard_full - numbers.hard_from))
     relief = smooth((before - effort - numbers.relief_from) / (numbers.relief_full - numbers.relief_from))
     easy = 1.0 - smooth(before / numbers.hard_from)
-    air = moving_mean(flights, rate, numbers.air_around)
+    air = moving_mean(moving_mean(flights, rate, numbers.air_around), rate, numbers.air_around)
     return Mood(*(np.interp(at, times, one) for one in (hard, relief, easy, air)))
 
 
@@ -122,7 +122,7 @@ def add_face(skeleton: Skeleton, poses: Poses, at: Array, shown: tuple[Mood, Pee
         numbers.relief * mood.relief, numbers.easy * mood.easy * _now_and_then(song, at, numbers.smile_time, SMILE_SALT)
     )
     pressed = mood.hard * (1.0 - _now_and_then(song, at, numbers.mouth_time, MOUTH_SALT))
-    lids = numbers.narrow * (pressed + mood.hard) / 2 + numbers.squint * smile + down * numbers.lids_follow
+    lids = numbers.narrow * mood.hard + numbers.squint * smile + down * numbers.lids_follow
     lids = np.clip(lids - numbers.widen * mood.air, -numbers.widen, 1.0)
     open_eye = (1.0 - eyelids(at + context.phase, layers.blink_time, layers.blink)) * (1.0 - lids)
     jaw = np.radians(JAW_LAUGH) * np.maximum(smile, _laugh(at, plan.last, layers))

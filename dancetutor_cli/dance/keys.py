@@ -119,6 +119,7 @@ SMALL, SPARSE = 0.1, 4  # metres; joints with a shorter reach (fingers, eyes, ja
 SMALL_TOLERANCE = 0.0002  # metres; and where they would be farther off
 TOUCH = 0.06  # seconds around the touch of a palm in which its arm keeps all keys: contacts are measured there
 _ANKLES, _WRISTS, _HAIR = ("l_talocrural", "r_talocrural"), ("l_radiocarpal", "r_radiocarpal"), "braid"
+_JAW = "temporomandibular"
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +147,9 @@ def key_times_of(motion: Motion) -> tuple[KeyTimes, ...]:
             out.append(KeyTimes(joints, regular | wanted | (held if joints is arms else False)))
     sparse = np.zeros(len(every), dtype=bool)
     sparse[[*np.flatnonzero(regular)[::SPARSE], -1]] = True
-    small = (joints for joints in (fingers, face) if joints)
+    jaw = tuple(j for j in face if motion.skeleton.names[j] == _JAW)
+    eyes = tuple(j for j in face if j not in jaw)
+    small = (joints for joints in (fingers, jaw, eyes) if joints)
     out += [KeyTimes(joints, sparse | (_off(motion, joints, sparse) > SMALL_TOLERANCE)) for joints in small]
     return tuple(out)
 

@@ -192,6 +192,7 @@ class FaceSettings:
     squint: Ratio
     easy: Ratio
     smile_time: Duration
+    air_least: Seconds
     air_around: Duration
     widen: Ratio
     gasp: Degrees
