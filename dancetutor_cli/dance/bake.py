@@ -14,6 +14,7 @@ from dancetutor_cli.dance.foot_path import Feet, both_feet
 from dancetutor_cli.dance.footwork.planner import Manner, plan_dance
 from dancetutor_cli.dance.ik.ankles import ease_ankles, rolled_soles
 from dancetutor_cli.dance.ik.full_body import solve_poses
+from dancetutor_cli.dance.ik.knees import ease_hips
 from dancetutor_cli.dance.ik.targets import FreeHands, free_hands, translated
 from dancetutor_cli.dance.keys import Keys, doubtful_times, key_times, refined
 from dancetutor_cli.dance.layers import Activity, add_fingers, add_layers, curls, glances_at, hand_use, look
@@ -194,6 +195,7 @@ def pose_body(
     rolled = rolled_soles(skeleton, plan, (at, feet, targets, poses), rises)
     if rolled is not None:
         poses = solve_poses(skeleton, rolled, reach, 0.0)
+    ease_hips(skeleton, poses)
     ease_ankles(skeleton, poses, feet)
     look(poses, body, at, context)
     add_layers(poses, at, doing, context)

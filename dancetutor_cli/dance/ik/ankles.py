@@ -73,16 +73,17 @@ def freedom(foot: FootPath) -> Array:
 
 
 def giving_knees(skeleton: Skeleton, poses: Poses, around: int) -> Array:
-    """Return the turns (f, 2) of knees outward about hip-ankle lines, radians, that keep ankles within their limits.
+    """Return the turns (f, 2) of knees outward about hip-ankle lines, radians, that keep legs within their limits.
 
-    This is for feet that stand, or nearly stand. The turn is as small as possible, and the same in each stretch of
-    frames.
+    They are the limits of hips, and of ankles over feet that stand, or nearly stand. The turn is as small as possible,
+    and the same in each stretch of frames.
 
     around : frames before and after a stretch in which the knees turn and turn back; they must do no harm there either
     """
     out = np.zeros((len(poses.root), 2))
     for side, name in enumerate("lr"):
-        past = beyond(skeleton, f"{name}_talocrural", poses.rotations[:, skeleton.index(f"{name}_talocrural")])
+        joints = [f"{name}_{joint}" for joint in ("talocrural", "hip")]
+        past = np.maximum(*(beyond(skeleton, one, poses.rotations[:, skeleton.index(one)]) for one in joints))
         for first, end in runs(past > -NEAR):
             if past[first:end].max() > 0.0:
                 seen = slice(max(first - around, 0), end + around)
@@ -96,14 +97,12 @@ def giving_knees(skeleton: Skeleton, poses: Poses, around: int) -> Array:
 def _least_give(skeleton: Skeleton, poses: Poses, inside: NDArray[np.bool_], name: str) -> float:
     """Return how far one knee turns outward: the smallest turn that brings ankle and hip within their limits.
 
-    It is measured in the frames `inside` in which the foot is low, and must make no other frame worse. If there is no
-    such turn, the result is 0.
+    It is measured in the frames `inside`, of the ankle in those in which the foot is low, and must make no other frame
+    worse. If there is no such turn, the result is 0.
     """
     hip, knee, ankle, ball = (skeleton.index(f"{name}_{n}") for n in ("hip", "knee", "talocrural", "metatarsal"))
     places, world = world_transforms(skeleton, poses.rotations, poses.root)
-    low = inside & (places[:, ball, 1] < skeleton.rest[ball][1] + UP_TO)
-    if not low.any():
-        return 0.0
+    high = places[:, ball, 1] > skeleton.rest[ball][1] + UP_TO
     line = places[:, ankle] - places[:, hip]
     line /= np.linalg.norm(line, axis=1, keepdims=True)
     pelvis = quat.conjugate(world[:, skeleton.parents[hip]])
@@ -113,8 +112,9 @@ def _least_give(skeleton: Skeleton, poses: Poses, inside: NDArray[np.bool_], nam
         thigh, shank = quat.multiply(turn, world[:, hip]), quat.multiply(turn, world[:, knee])
         foot = quat.multiply(quat.conjugate(shank), world[:, ankle])
         hips = beyond(skeleton, f"{name}_hip", quat.multiply(pelvis, thigh))
-        past[k] = np.maximum(beyond(skeleton, f"{name}_talocrural", foot), hips) + ROOM
-    worst = past[:, low].max(axis=1)
+        ankles = beyond(skeleton, f"{name}_talocrural", foot)
+        past[k] = np.maximum(np.where(high, -np.inf, ankles), hips) + ROOM
+    worst = past[:, inside].max(axis=1)
     worst[(past > np.maximum(past[0], 0.0)).any(axis=1)] = np.inf
     least = max(0.0, float(worst.min()))
     return float(GIVES[int(np.argmax(worst <= least))]) if least <= ROOM else 0.0

@@ -1,4 +1,6 @@
-"""The directions in which knees point: between the body's front and the toes, and not against each other."""
+"""The directions in which knees point: between the body's front and the toes, not against each other, and so that hips
+stay within their limits.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +11,12 @@ from numpy.typing import NDArray
 
 from dancetutor_cli.dance.foot_path import Feet
 from dancetutor_cli.dance.rig import quaternion as quat
+from dancetutor_cli.dance.rig.body import world_transforms
 from dancetutor_cli.dance.rig.limbs import LEG, bone_lengths, depth, leg_capsules, middle_joint, square_to
-from dancetutor_cli.dance.rig.skeleton import Skeleton
+from dancetutor_cli.dance.rig.skeleton import Skeleton, beyond
 from dancetutor_cli.dance.settings_body import KneeSettings
 from dancetutor_cli.dance.smoothing import smooth
-from dancetutor_cli.dance.units import Array
+from dancetutor_cli.dance.units import Array, Poses
 
 OUTSIDE = 0.002  # metres outside its hip at which a leg does not lean
 LOOKED = 0.03  # metres; legs farther apart are not changed
@@ -118,3 +121,61 @@ def _swivelled(reach: Array, poles: Array, given: Array) -> Array:
     line, ahead = reach / np.linalg.norm(reach, axis=2, keepdims=True), square_to(reach, poles)
     aside = np.cross(line, ahead) * np.array([[-1.0], [1.0]])
     return np.asarray(np.cos(given)[..., None] * ahead + np.sin(given)[..., None] * aside)
+
+
+# Hips within their limits: the knee turns a little about the line from hip to ankle, and the foot stays as it is.
+
+BEFORE_LIMIT = 1.0  # degrees from its limit at which a hip begins to be eased
+ANKLE_ROOM = 0.3  # degrees from its limit up to which the ankle may be bent for that
+TRIAL = 6.0  # degrees that a knee is turned both ways to measure the effect
+LEAST_EFFECT, MOST_TURN = 0.25, 12.0  # least effect that counts, degrees per degree; most that a knee turns, degrees
+
+
+def ease_hips(skeleton: Skeleton, poses: Poses) -> None:
+    """Turn knees, in place, where a hip would be past its limits, as far as the ankle allows it.
+
+    Each frame is handled alone, and smoothly: the result at one time does not depend on the other times.
+    """
+    for side in "lr":
+        joints = [skeleton.index(f"{side}_{name}") for name in ("hip", "knee", "talocrural")]
+        near = np.flatnonzero(beyond(skeleton, f"{side}_hip", poses.rotations[:, joints[0]]) > -BEFORE_LIMIT)
+        if len(near):
+            leg = _TurningLeg(skeleton, side, Poses(poses.rotations[near], poses.root[near]))
+            hips, ankles = leg.rotations(_eased(leg))
+            poses.rotations[near, joints[0]], poses.rotations[near, joints[2]] = hips, ankles
+
+
+def _eased(leg: _TurningLeg) -> Array:
+    """Return how far (f,) to turn a leg, degrees."""
+    (past, ankle), (more, one), (less, other) = (leg.past(turn) for turn in (0.0, TRIAL, -TRIAL))
+    over = past + BEFORE_LIMIT
+    need = np.where(over < BEFORE_LIMIT, over**2 / (2 * BEFORE_LIMIT), over - BEFORE_LIMIT / 2)
+    effect = (more - less) / (2 * TRIAL)
+    turn = np.clip(-need * effect / np.maximum(effect**2, LEAST_EFFECT**2), -MOST_TURN, MOST_TURN)
+    bends = np.maximum((np.where(turn > 0.0, one, other) - ankle) / TRIAL, 1e-6)  # degrees of the ankle per degree
+    return np.sign(turn) * np.minimum(np.abs(turn), np.maximum(-ANKLE_ROOM - ankle, 0.0) / bends)
+
+
+class _TurningLeg:
+    """A leg in f frames that turns about the line from hip to ankle, while its foot stays as it is."""
+
+    def __init__(self, skeleton: Skeleton, side: str, poses: Poses) -> None:
+        self._skeleton, self._names = skeleton, (f"{side}_hip", f"{side}_talocrural")
+        hip, knee, ankle = (skeleton.index(f"{side}_{name}") for name in ("hip", "knee", "talocrural"))
+        places, world = world_transforms(skeleton, poses.rotations, poses.root)
+        line = places[:, ankle] - places[:, hip]
+        self._line = line / np.linalg.norm(line, axis=1, keepdims=True)
+        self._pelvis = quat.conjugate(world[:, skeleton.parents[hip]])
+        self._thigh, self._shank, self._foot = world[:, hip], world[:, knee], world[:, ankle]
+
+    def rotations(self, turn: Array) -> tuple[Array, Array]:
+        """Return the local rotations (f, 4) of hip and ankle of a leg turned by (f,) degrees."""
+        about = quat.from_axis_angle(self._line, np.radians(turn))
+        hips = quat.multiply(self._pelvis, quat.multiply(about, self._thigh))
+        return hips, quat.multiply(quat.conjugate(quat.multiply(about, self._shank)), self._foot)
+
+    def past(self, turn: float) -> tuple[Array, Array]:
+        """Return the degrees (f,) by which hip and ankle are past their limits in a leg turned by `turn` degrees."""
+        both = self.rotations(np.full(len(self._line), turn))
+        hips, ankles = (beyond(self._skeleton, *one) for one in zip(self._names, both, strict=True))
+        return hips, ankles
